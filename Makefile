@@ -17,10 +17,14 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
+.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
+
+# Blocks without a base, each with all of its methods, into build/flat/st: for older versions of CODESYS.
+flat: $(READY)
+	$(RUN) -m derive generate --output $(OUT)/flat --profile $(or $(PROFILE),flat)
 
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)

@@ -5,6 +5,7 @@ ARCHITECTURE.md has a row for each folder. The modules beside these folders:
 __main__: `python -m derive`, the same as the command `softkin`
 cache: results of earlier runs, kept by the content of everything on which they depend
 faults: the cause of a failed derivation: the description, or the compiler
+five_axes: five-axis machines by the order of their turning axes, for mechanism files to import
 frames: the turns and shifts that make a chain, for mechanism files to import
 kept: results that are kept by the identity of what they were computed from
 live: a class of `softkin`, made from a description in the running program

@@ -7,6 +7,7 @@ import pytest
 
 from derive.command.catalogue import OUTPUT
 from derive.description.catalogue import Entry
+from derive.description.mechanism import Role
 from derive.output import differences
 from tests.fresh import Generation
 from tests.mechanisms import catalogue
@@ -39,7 +40,8 @@ def test_every_mechanism_agrees(entry: Entry, generation: Generation) -> None:
         assert found.missed is not None
         assert found.missed[0] <= found.missed[1] / 100
     elif not entry[1].rods:
-        assert evidence.poses == 144
+        inclined = any(p.role is Role.ANGLE and p.default is None for p in entry[1].parameters)
+        assert evidence.poses == 144 or (inclined and evidence.poses >= 130)  # at 5 degrees few poses are regular
         assert found.solutions == 2 ** len(entry[1].branches)
     else:  # random dimensions may form no loop, and some working modes lie on the other assembly side
         assert evidence.poses >= 72

@@ -5,6 +5,7 @@ It may import every other folder.
 calibrate: `calibrate`: the deviations of a machine from measured samples, or poses to measure
 catalogue: `generate` and `check` without a file: all mechanisms, one output folder
 explain: `explain`: the derivation of a machine, step by step
+like: `like`: the block for kinematics as a vendor calls them, and the meaning of the vendor's parameters
 line: the commands and their options, and the status of a run
 live: `live`: serve the page of a machine, and move it with the values of a controller
 new: `new`: a commented description to start from

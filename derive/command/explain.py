@@ -148,7 +148,7 @@ def _forward(derived: Derived) -> Iterator[str]:
 
 
 def _name(mechanism: Mechanism, unknown: sp.Symbol) -> str:
-    return next((j.name for j in mechanism.joints if j.symbol == unknown), str(unknown))
+    return next((j.moved_name for j in mechanism.joints if j.symbol == unknown), str(unknown))
 
 
 def _plain(value: sp.Basic) -> str:

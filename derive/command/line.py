@@ -1,6 +1,7 @@
 """`softkin`: describe a machine, derive it, look at its derivation; and `generate`, which writes the whole catalogue.
 
 softkin new my_machine.py                  write a commented description to start from
+softkin like linuxcnc xyzac                name the block for kinematics as a vendor calls them
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
 softkin explain --html my_machine.py       the same as a page, with pictures, its Jacobian and its singularities
 softkin check my_machine.py                derive and measure it, and write nothing
@@ -20,7 +21,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.command import calibrate, catalogue, explain, live, new, own, report, view
+from derive.command import calibrate, catalogue, explain, like, live, new, own, report, view
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError
 from derive.faults import GenerationError, error
@@ -84,6 +85,7 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     _catalogue_options(check)
     check.set_defaults(only=[], fresh=True, package=None, keep_going=True, language=None)
     for parser in (derive, check):
+        parser.add_argument("--calibrated", action="store_true", help=_CALIBRATED)
         parser.add_argument(
             "--keep-going",
             action=argparse.BooleanOptionalAction,
@@ -100,9 +102,9 @@ def _own_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser])
     explained.set_defaults(run=explain.explain)
     _view_command(commands)
     text = "write a commented description to start from"
-    fresh = commands.add_parser("new", help=text, description=text)
-    fresh.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
-    fresh.set_defaults(run=new.new)
+    new.arguments(commands.add_parser("new", help=text, description=text))
+    text = "name the block for kinematics as a vendor calls them, and the meaning of the vendor's parameters"
+    like.arguments(commands.add_parser("like", help=text, description=text))
     text = "write a description of a robot file (URDF, MJCF, a DH table), to be read, edited and derived"
     imported = commands.add_parser("import", help=text, description=text)
     importing.add_arguments(imported)
@@ -127,6 +129,7 @@ def _view_command(commands: argparse._SubParsersAction[argparse.ArgumentParser])
         metavar="BODY=FILE.glb[*SCALE]",
         help="a mesh (binary glTF) in the place of a body of one machine: base, the axes that move it, plate, tool",
     )
+    shown.add_argument("--calibrated", action="store_true", help=_CALIBRATED)
     shown.set_defaults(
         run=view.view, mechanisms=MECHANISMS, only=[], profile=None, fresh=False, language=["javascript"],
         output=catalogue.OUTPUT,
@@ -142,6 +145,7 @@ def _languages(command: argparse.ArgumentParser) -> None:
     )
 
 
+_CALIBRATED = "with the deviations of axes, base and tool as further inputs: the machine as it was measured"
 _PROFILE = "a profile of templates/st/softmotion.toml, for an older library or flat blocks; several are joined by +"
 _PAGES = f"the folder of pages (default: {report.OUTPUT})"
 

@@ -1,4 +1,4 @@
-"""`new`: a commented description to start from, which can be derived as it is."""
+"""`new`: a commented description to start from, which can be derived as it is; or that of a five-axis machine."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 from derive.description.mechanism import DescriptionError
+from derive.five_axes import ORDERS
 
 _TEXT = '''\
 """My machine: two links in a plane, a quill, and a turn of the tool (a SCARA). Change it into yours.
@@ -48,9 +49,36 @@ MECHANISM = Mechanism(
 )
 '''
 
+_FIVE_AXES = '''\
+"""My five-axis machine: {order}. `five_axes` makes the description of its letters.
+
+    softkin explain {file}                 its parameters and axes, and each step of the derivation
+    softkin check {file}                   derive and measure it
+    softkin derive {file} --out build      Python package and function block
+"""
+
+from derive.five_axes import five_axes
+
+MECHANISM = five_axes("{name}", {words})
+'''
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """What `new` takes."""
+    parser.add_argument("file", type=Path, nargs="?", default=Path("my_machine.py"), metavar="FILE")
+    text = f"a machine with five axes, by the order of its turning axes: {', '.join(ORDERS)}"
+    parser.add_argument("--five-axis", choices=ORDERS, metavar="ORDER", help=text)
+    text = "with --five-axis: the trunnion, or the axis of the head next to the tool, is inclined"
+    parser.add_argument("--nutating", action="store_true", help=text)
+    text = "with --five-axis: parameters for the errors of the place and the direction of each turning axis"
+    parser.add_argument("--location-errors", action="store_true", help=text)
+    parser.set_defaults(run=new)
+
 
 def new(options: argparse.Namespace) -> int:
-    """Write the description; raises `DescriptionError` where there is a file already."""
+    """Write the description; raises `DescriptionError` where there is a file already, or a word stands alone."""
+    if options.five_axis is None and (options.nutating or options.location_errors):
+        raise DescriptionError("--nutating and --location-errors say more of --five-axis ORDER: add it")
     path: Path = options.file
     path = path if path.suffix == ".py" else path.with_name(f"{path.name}.py")
     name = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", path.stem))
@@ -58,7 +86,7 @@ def new(options: argparse.Namespace) -> int:
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         with path.open("x", encoding="utf-8") as file:
-            file.write(description(path.name, name))
+            file.write(_five_axes(path.name, name, options) if options.five_axis else description(path.name, name))
     except FileExistsError:
         raise DescriptionError(f"{path} is there already: name another file") from None
     print(f"{path}: a description to change. Next: softkin check {path}")
@@ -68,3 +96,10 @@ def new(options: argparse.Namespace) -> int:
 def description(file: str, name: str) -> str:
     """The text of a description in a file, of a machine with a name."""
     return _TEXT.format(file=file, name=name)
+
+
+def _five_axes(file: str, name: str, options: argparse.Namespace) -> str:
+    head, table = ORDERS[options.five_axis]
+    words = [f'{place}="{axes}"' for place, axes in (("head", head), ("table", table)) if axes]
+    words += [f"{word}=True" for word in ("nutating", "location_errors") if getattr(options, word)]
+    return _FIVE_AXES.format(file=file, name=name, order=options.five_axis, words=", ".join(words))

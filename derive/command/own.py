@@ -16,6 +16,7 @@ from derive.description.errors import printable
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import line_of
 from derive.faults import CompilerError, GenerationError, error, of_the_system
+from derive.form.deviations import with_deviations
 from derive.output import ForeignFolder, differences, replace_beside_others, replace_parts
 from derive.pipeline import WRITTEN, derive_one, files_of, languages, unwritten
 
@@ -145,6 +146,7 @@ def _derived(path: Path, package: str, options: argparse.Namespace, stages: Stag
     mechanism = load(path)
     stages.line(f"  {_described(mechanism)}")
     try:
+        mechanism = with_deviations(mechanism) if options.calibrated else mechanism
         built = derive_one(mechanism, profile, stages.report, [language.name for language in outputs])
         files = files_of([built], [one for one in outputs if one.name in built.parts])
     except Exception as problem:

@@ -15,6 +15,7 @@ from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.python.entries import class_name
 from derive.faults import GenerationError
+from derive.form.deviations import with_deviations
 from derive.output import write_file
 from derive.pipeline import Built, derive_one, files_of, languages
 from derive.view.node import MissingTool
@@ -55,7 +56,7 @@ def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Conten
 
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
     """The page of one machine of a user."""
-    mechanism = load(path)
+    mechanism = with_deviations(load(path)) if options.calibrated else load(path)
     package = own.package_of(path, None)
     built = derive_one(mechanism, None, stages.report, [_LANGUAGE, "python"])
     files = files_of([built], languages(None, package, [_LANGUAGE]))

@@ -6,10 +6,10 @@ amounts: the amounts of turns and shifts in a chain: right angles, and which are
 branches: branches and assembly modes: two solutions that the sign of an indicator tells apart
 catalogue: the mechanism files of a folder, loaded and checked
 dimensions: the parameters of a machine by their roles, and conditions between them
+drives: loops that move joints of a chain: cylinders, cranks with rods
 errors: the error of a description that cannot be right, and text of files as a terminal may print it
-fields: the kinds of values that the fields of a mechanism hold
+fields: the kinds of values that the fields and parts of a mechanism hold
 joints: how joints move, what their values mean, and their ranges
-kinds: the message where a part of a description has the wrong kind
 loops: the parts of a closed loop: rods, planes that guide points, bounds and limits of quantities
 mechanism: the mechanism with its task, and all names that a description uses
 places: the line of a description that is wrong

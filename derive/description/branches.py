@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.description.errors import DescriptionError
-from derive.description.kinds import expression
+from derive.description.fields import expression
 
 
 @dataclass(frozen=True)

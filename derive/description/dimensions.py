@@ -8,7 +8,7 @@ from enum import Enum
 import sympy as sp
 
 from derive.description.quantity import Quantity
-from derive.ir.constants import DEGREE
+from derive.ir.constants import DEGREE, LARGEST
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 
@@ -20,6 +20,9 @@ _OF_EQUATIONS = {
     *(r.name for r in ROTATION_ENTRIES),
 }
 """Names that equations, and conditions on reaches, give to other values."""
+
+
+_LARGEST = float(LARGEST)
 
 
 class Role(Enum):
@@ -60,6 +63,20 @@ class Parameter(Quantity):
     """The value of a number that stands in a chain. It has a name, but is no input of the machine."""
     given: str = ""
     """Its name in the description, where the derivation uses another name."""
+    usual: tuple[float, float] | None = None
+    """The range that a vendor states, which is shown where values are entered; values beyond it are not refused."""
+    deviation: float | None = None
+    """Its value in the machine that is tested, of a deviation: the machine that is drawn and shown has none."""
+
+    @property
+    def shown(self) -> tuple[float, float]:
+        """The range that is shown where values are entered."""
+        return self.usual or (self.low, self.high)
+
+    @property
+    def tested(self) -> float:
+        """The value in the machine that is tested."""
+        return self.nominal if self.deviation is None else self.deviation
 
     @property
     def given_name(self) -> str:
@@ -83,16 +100,22 @@ def _symbol_name(name: str) -> str:
 
 
 def length(name: str, meaning: str, *, nominal: float, high: float = 1e9, default: float | None = None) -> Parameter:
-    """A length greater than zero. It must be given, unless the description is of one machine and states a default."""
+    """A length greater than zero. It must be given, unless the description is of one machine and states a default.
+
+    high: the largest length that the vendor states, which is shown where values are entered; here as in the other
+    functions no longer one is refused.
+    """
     symbol = sp.Symbol(_symbol_name(name), positive=True)
     shown = _shown(nominal, default)
-    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, default, shown)
+    usual = (0.0, high)
+    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, _LARGEST, True, default, shown, usual=usual)
 
 
 def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
     """A length that may be zero, and is zero when not given."""
     symbol = sp.Symbol(_symbol_name(name), nonnegative=True)
-    return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
+    usual = (0.0, high)
+    return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, _LARGEST, False, 0.0, nominal, usual=usual)
 
 
 def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
@@ -103,7 +126,8 @@ def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
 
 def pitch(name: str, meaning: str, *, nominal: float, low: float = -1e9, high: float = 1e9) -> Parameter:
     """A travel per revolution, zero when not given."""
-    return Parameter(_value_of(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
+    ends, usual = (-_LARGEST, _LARGEST), (low, high)
+    return Parameter(_value_of(name), name, Role.PITCH, meaning, "u/rev", *ends, False, 0.0, nominal, usual=usual)
 
 
 def gear(name: str, meaning: str, *, nominal: float) -> Parameter:

@@ -9,6 +9,8 @@ from typing import TypedDict, Unpack
 import sympy as sp
 
 from derive.description.quantity import Quantity
+from derive.geometry.frames import Chain
+from derive.geometry.pose import pose_of
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import COORDINATE_NAMES, count, real
 
@@ -26,6 +28,36 @@ class Kind(Enum):
     """A whole turn of its motor is not a whole turn of its joints: declared Linear, with values in degrees."""
     DRIVING = "driving"
     """A turning motor that moves lengths alone, through a belt or a screw: declared Linear, with values in degrees."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """One loop, in the frame in which the joint that it moves stands: |tip - start| = length."""
+
+    moved: sp.Symbol
+    """What it moves: a joint of the chain, or what the next loop is moved by."""
+    by: sp.Symbol
+    """What moves it: a motor, or what the loop before moves."""
+    turns: tuple[bool, bool]
+    """Whether `moved` and `by` are angles."""
+    sides: tuple[sp.Expr, sp.Expr]
+    """The signs of the derivatives of the equation by both, which tell the two solutions for each apart: one is the
+    assembly mode, the other the side of the crank."""
+    start: Chain
+    tip: Chain
+    length: sp.Expr
+    name: str
+    """The name of the joint that it moves."""
+
+    @property
+    def vector(self) -> sp.ImmutableMatrix:
+        """From the start to the tip."""
+        return sp.ImmutableMatrix(pose_of(self.tip).position - pose_of(self.start).position)
+
+    @property
+    def equation(self) -> sp.Expr:
+        """The closure: the square of the distance, less that of the length."""
+        return self.vector.dot(self.vector) - self.length**2
 
 
 @dataclass(frozen=True)
@@ -51,6 +83,8 @@ class Joint(Quantity):
     domain: Interval | None = None
     """The range that the closure allows (degrees or length), which is documented for the axis; None: any value."""
     nominal: float = 0.0
+    loops: tuple[Loop, ...] = ()
+    """The loops between the motor and the joint, that of the motor first: the joint value then follows from these."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coupling", sp.sympify(self.coupling))
@@ -63,6 +97,11 @@ class Joint(Quantity):
     def key(self) -> str:
         """The lower-case name, with which `offset_a1` and `lower_a1` end."""
         return self.name.lower()
+
+    @property
+    def moved_name(self) -> str:
+        """The name of what the chain has: of a joint that loops move, not of its actuator."""
+        return self.loops[-1].name if self.loops else self.name
 
     @property
     def shown(self) -> float:
@@ -78,7 +117,12 @@ class Joint(Quantity):
     @property
     def is_angle(self) -> bool:
         """Whether the joint turns: its value is an angle, of which sines and cosines are taken."""
-        return self.kind not in (Kind.LINEAR, Kind.DRIVING)
+        return self.loops[-1].turns[0] if self.loops else self.kind not in (Kind.LINEAR, Kind.DRIVING)
+
+    @property
+    def axis_is_angle(self) -> bool:
+        """Whether its axis turns: a cylinder may move an angle."""
+        return self.in_degrees if self.loops else self.is_angle
 
     @property
     def in_degrees(self) -> bool:

@@ -33,10 +33,10 @@ from derive.description.dimensions import (
     signed_length,
     transmission,
 )
+from derive.description.drives import Drive, driven, with_loops
 from derive.description.errors import DescriptionError
-from derive.description.fields import as_stated
+from derive.description.fields import as_stated, expressions
 from derive.description.joints import Interval, Joint, Kind, arc, helical, linear, rotary
-from derive.description.kinds import expressions
 from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
@@ -47,10 +47,11 @@ COORDINATE_NAMES_OF_A_PLANE = "xy"
 
 __all__ = [
     "COORDINATE_NAMES", "ROTATION", "ROTATION_ENTRIES", "TURN", "Assembly", "Bound", "Branch", "Constraint",
-    "DescriptionError", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod", "Search",
-    "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch", "crossing",
-    "coordinate", "coupling", "distance", "flag", "gear", "guide", "helical", "length", "limited", "linear", "on_plate",
-    "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign", "signed_length", "transmission",
+    "DescriptionError", "Drive", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod",
+    "Search", "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch",
+    "crossing", "coordinate", "coupling", "distance", "driven", "flag", "gear", "guide", "helical", "length", "limited",
+    "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign", "signed_length",
+    "transmission",
 ]  # fmt: skip
 
 
@@ -146,6 +147,8 @@ class Mechanism:
     search: Search | None = None
     held: tuple[Joint, ...] = ()
     """The joints that the inverse leaves where the reference has them, of a machine with more joints than its task."""
+    drives: tuple[Drive, ...] = ()
+    """The loops that move joints of the chain: `joints` has the actuators, and the chain what they move."""
     positive: tuple[sp.Expr, ...] = ()
     """Quantities that are positive in this machine: their negative mirror solutions are excluded."""
     limited: tuple[Limited, ...] = ()
@@ -161,6 +164,8 @@ class Mechanism:
     can do it; True: a machine that cannot is refused."""
     notes: tuple[str, ...] = field(default=())
     """Sentences for the user's documentation: definitions of our own, and properties to know."""
+    nominal: Mechanism | None = None
+    """The machine as it is drawn, of one that has its deviations as inputs: see `form.deviations`."""
 
     def __post_init__(self) -> None:
         for name, value in as_stated(vars(self)).items():
@@ -170,7 +175,7 @@ class Mechanism:
         object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         held = {joint.name for joint in self.held}  # a held joint keeps the turn of the reference: it needs no byte
         joints = (replace(j, multi_turn=False) if j.name in held else j for j in self.joints)
-        object.__setattr__(self, "joints", tuple(joints))
+        object.__setattr__(self, "joints", with_loops(tuple(joints), self.drives, self.parameters))
         if not self.summary:
             object.__setattr__(self, "summary", _axes_in_words(self.joints))
 

@@ -47,7 +47,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"it must be coordinates in the order", 'as in task=Task("xyz")'),
     (r"a cone of a rod's joint is about", "state home=(…)"),
     (r"occurs nowhere in the closure", "use it in the chain or in a rod, or leave it out of joints=(…)"),
-    (r"which is not a joint or a parameter of this", "list it in joints=(…) or in parameters=(…)"),
+    (r"which is not a joint or a parameter of this", "list it in joints=(…) or in parameters=(…), or in drives=(…)"),
     (r"which is not a parameter", "list it in parameters=(…)"),
     (r"depends on no joint", "take an expression that changes its sign where the two solutions meet, as sin(A2)"),
     (r"needs two names with the signs", 'as in branch("elbow", sin(A2), right=+1, left=-1)'),

@@ -11,7 +11,7 @@ import sympy as sp
 
 from derive.algebra.angle_sums import terms_of
 from derive.description.amounts import wrong_amounts
-from derive.description.kinds import number, pair
+from derive.description.fields import number, pair
 from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
@@ -152,16 +152,12 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
             yield f"{word!r} cannot name a parameter: letters, digits and _, and no digit first"
     if not _UNIT.match(parameter.unit):
         yield f"parameter {name!r}: {parameter.unit!r} is no unit: letters, digits, / and ^"
-    stated = (
-        parameter.nominal,
-        parameter.low,
-        parameter.high,
-        *(() if parameter.default is None else (parameter.default,)),
-    )
+    stated = (parameter.nominal, *parameter.shown, *(() if parameter.default is None else (parameter.default,)))
     if strange := [value for value in stated if not isinstance(value, int | float)]:
         yield f"parameter {name!r}: {strange[0]!r} is not a number"
         return
-    if not parameter.low < parameter.high:
+    low, high = parameter.shown
+    if not low < high:
         yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
     for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
         if value is not None and (wrong := number(f"its {word}", value)) is not None:
@@ -171,12 +167,13 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
 
 
 def _contains(parameter: Parameter, value: float) -> bool:
-    above = value > parameter.low if parameter.low_open else value >= parameter.low
-    return above and value <= parameter.high
+    low, high = parameter.shown
+    return low <= value <= high and not (parameter.low_open and value == low)
 
 
 def _interval(parameter: Parameter) -> str:
-    return f"{']' if parameter.low_open else '['}{parameter.low:g} .. {parameter.high:g}]"
+    low, high = parameter.shown
+    return f"{']' if parameter.low_open else '['}{low:g} .. {high:g}]"
 
 
 def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
@@ -230,6 +227,8 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _shape(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.drives and mechanism.chain is None:
+        yield "drives= are loops that move joints of a chain: a closed loop states its rods"
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
     yield from _position(mechanism)

@@ -8,6 +8,7 @@ drawing: the whole drawing: a scene, and two poses for each choice of the config
 labels: the labels of dimensions
 loop: the scene of a closed loop
 parts: the drawn parts at any pose: a program, and the meaning of each of its numbers
+pins: the pins of a loop that moves a joint of a chain
 pose: the pose that is drawn
 scene: a drawing as data: bodies, joints, dimensions, frames
 """

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import sympy as sp
 
+from derive.description.joints import Loop
 from derive.description.mechanism import DescriptionError, Joint, Mechanism
 from derive.drawing.belts import belt_of
-from derive.drawing.labels import Values, axis_name, interface, plain
+from derive.drawing.labels import Values, axis_name, interface, lengths_of, plain
+from derive.drawing.pins import pins_of
 from derive.drawing.scene import Belt, Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
 from derive.geometry.frames import Factor, Motion
+from derive.geometry.pose import pose_of
 from derive.ir.interpret import Array, evaluate
 
 BELT_SIZE = 100.0
@@ -30,6 +34,7 @@ def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
     for factor in chain.factors:
         walker.pass_over(factor)
     walker.finish_body(None)
+    walker.draw_loops()
     apart = float(np.linalg.norm(walker.position - np.array(tool.position)))
     if apart > _EXACT * (1.0 + float(np.linalg.norm(walker.position))):
         raise DescriptionError(f"the chain ends {apart:g} away from where forward kinematics has the tool")
@@ -42,6 +47,7 @@ def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
         grounds=((0.0, 0.0, 0.0),),
         tool=tool,
         hidden=tuple(walker.hidden),
+        loops=tuple(_loops(mechanism)),
         belt=_belt(mechanism, walker),
     )
 
@@ -68,6 +74,8 @@ class _Walker:
     slides: list[Slide] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     hidden: list[sp.Expr] = field(default_factory=list)
+    frames: list[tuple[set[Joint], Array, Array]] = field(default_factory=list)
+    """The joints of every moving factor, and the frame in front of it: position and rotation."""
     moves: dict[Joint, list[Array]] = field(default_factory=dict)
     """By joint: the vectors by which a unit of the joint moves its shifts."""
     _shifts: list[tuple[Array, sp.Expr]] = field(default_factory=list)
@@ -80,6 +88,7 @@ class _Walker:
     def pass_over(self, factor: Factor) -> None:
         """Compose the scene with one more factor."""
         moving = [j for j in self.mechanism.joints if j.symbol in factor.amount.free_symbols]
+        self.frames.append(({*moving}, self.position, self.rotation))
         direction = self.rotation[:, factor.axis]
         amount = float(evaluate(factor.amount, self.values))
         if factor.motion is Motion.SHIFT:
@@ -157,6 +166,38 @@ class _Walker:
             if turn.toward is None and np.linalg.norm(across) > 1e-9:
                 self.turns[index] = replace(turn, toward=point(across))
 
+    def draw_loops(self) -> None:
+        """Draw the cylinders, cranks and rods of the loops that move joints."""
+        for joint in (j for j in self.mechanism.joints if j.loops):
+            beside = next(moving for moving, _, _ in self.frames if joint in moving)
+            position, rotation = next((p, r) for moving, p, r in self.frames if moving & beside)
+            for number, loop in enumerate(joint.loops):
+                pins = [pins_of(chain) for chain in (loop.start, loop.tip)]
+                ends = [[position + rotation @ self._at(pin) for pin in some] for some in pins]
+                start, tip = ends[0][-1], ends[1][-1]
+                self.segments.append(Segment(point(start), point(tip), Body.ROD))
+                for some in ends:
+                    pairs = zip(some, some[1:], strict=False)
+                    self.segments += [Segment(point(a), point(b), Body.LINK) for a, b in pairs if np.any(a != b)]
+                if number == 0:
+                    self._actuator(joint, loop, rotation, ends)
+
+    def _actuator(self, joint: Joint, loop: Loop, rotation: Array, ends: list[list[Array]]) -> None:
+        """The label of the actuator: a turn at the pin of a crank, an arrow along a cylinder or a slide."""
+        label, start, tip = sp.Symbol(joint.name), ends[0][-1], ends[1][-1]
+        if loop.turns[1]:
+            turn = next(f for f in loop.start.factors if loop.by in f.amount.free_symbols)
+            centre = ends[0][0] if len(ends[0]) > 1 else start
+            self.turns.append(Turn(label, point(centre), point(rotation[:, turn.axis]), point(start - centre)))
+            return
+        moved = np.array([float(evaluate(v.diff(loop.by), self.values)) for v in pose_of(loop.start).position])
+        along = rotation @ moved if np.any(moved) else (tip - start) / np.linalg.norm(tip - start)
+        at = start if np.any(moved) else (start + tip) / 2
+        self.slides.append(Slide(label, point(at), point(along), has_rail=bool(np.any(moved))))
+
+    def _at(self, position: Sequence[sp.Expr]) -> Array:
+        return np.array([float(evaluate(sp.sympify(v), self.values)) for v in position])
+
     def _label(self, factor: Factor) -> sp.Expr:
         return interface(self.mechanism, _unsigned(self.mechanism, factor.amount))
 
@@ -171,6 +212,16 @@ def _drives(mechanism: Mechanism, values: Values, walker: _Walker) -> list[Slide
             unit: Point = point(total / np.linalg.norm(total))
             found.append(Slide(axis_name(joint), point(walker.position), unit, has_rail=False))
     return found
+
+
+def _loops(mechanism: Mechanism) -> Iterator[tuple[sp.Expr, tuple[sp.Expr, ...]]]:
+    """What every loop moves, and the lengths that it has and no loop before it: there are too many to draw."""
+    left = list(lengths_of(mechanism))
+    for loop in (loop for joint in mechanism.joints for loop in joint.loops):
+        read = loop.vector.free_symbols | sp.sympify(loop.length).free_symbols
+        own = [p for p in left if p.symbol in read]
+        left = [p for p in left if p not in own]
+        yield sp.Symbol(loop.name), tuple(plain(p.symbol) for p in own)
 
 
 def _unsigned(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:

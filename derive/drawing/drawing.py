@@ -156,7 +156,7 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
         turned = zip(mechanism.joints, drawn.axes, (*_ANGLES,) * 2, strict=False)
         if part or not drawn.is_zero or mechanism.chain is None:
             scale = part if mechanism.chain is None else 2.5 * part
-            yield tuple(axis + (scale * angle if joint.is_angle else 0.0) for joint, axis, angle in turned)
+            yield tuple(axis + (scale * angle if joint.axis_is_angle else 0.0) for joint, axis, angle in turned)
     if mechanism.chain is None and not mechanism.is_platform:
         sampled = sample_axes(mechanism, dict(machine.values), _SAMPLED, seed=5)
         rows = np.stack([np.round(sampled[j.axis.name], 1) for j in mechanism.joints], axis=1)

@@ -39,7 +39,7 @@ def plain(label: sp.Expr) -> sp.Expr:
 
 def axis_name(joint: Joint) -> sp.Symbol:
     """The axis as a label."""
-    return sp.Symbol(joint.name)
+    return sp.Symbol(joint.moved_name)
 
 
 def lengths_of(mechanism: Mechanism) -> tuple[Parameter, ...]:

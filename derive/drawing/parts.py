@@ -6,7 +6,7 @@ ends of its bars, as in `loop`: the circle of a crank by its centre and an end, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,6 +14,7 @@ import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Joint, Mechanism, X, Y, Z
 from derive.drawing.loop import bars_of, is_held_by_parallelograms
+from derive.drawing.pins import pins_of
 from derive.equations.axes import joint_lets
 from derive.equations.choices import with_choices
 from derive.ir.passes import normalise
@@ -79,7 +80,23 @@ def _chain(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
         rate = sp.diff(factor.amount, moving[-1].symbol) if moving else sp.Integer(1)
         names, at = [j.name for j in moving], values.place((factor.amount, rate))
         factors.append({"motion": factor.motion.value, "axis": factor.axis, "joints": names, "amount": at})
-    return {"kind": "chain", "factors": factors}
+    shape: dict[str, Any] = {"kind": "chain", "factors": factors}
+    loops = [part for joint in mechanism.joints for part in _loops_of(joint, factors, values)]
+    return shape | ({"loops": loops} if loops else {})
+
+
+def _loops_of(joint: Joint, factors: Sequence[Mapping[str, Any]], values: _Values) -> Iterator[dict[str, Any]]:
+    """The cylinder, or the crank with its rod, and the lever of every loop that moves a joint.
+
+    "at" is the number of the factor in front of which the loop stands, "start" and "tip" are its pins.
+    """
+    for number, loop in enumerate(joint.loops):
+        beside = next(set(f["joints"]) for f in factors if joint.name in f["joints"])
+        at = next(k for k, f in enumerate(factors) if beside & set(f["joints"]))
+        pins = {"start": pins_of(loop.start), "tip": pins_of(loop.tip)}
+        named = {word: [values.point(p) for p in some] for word, some in pins.items()}
+        driven = joint.name if number == 0 and not loop.turns[1] else ""
+        yield {"name": f"rod of {loop.name}", "joints": [joint.name], "at": at, "cylinder": driven} | named
 
 
 def _loop(mechanism: Mechanism, values: _Values) -> dict[str, Any]:

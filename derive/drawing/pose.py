@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from derive.description.mechanism import DescriptionError
+from derive.description.mechanism import DescriptionError, Mechanism
 from derive.drawing.labels import Values
 from derive.drawing.scene import Frame, frame_of
-from derive.ir.interpret import evaluate
-from derive.ir.program import Status
+from derive.equations.axes import joint_lets
+from derive.ir.interpret import evaluate, run
+from derive.ir.passes import normalise
+from derive.ir.program import Output, Status
 from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.parameters import shown_values
 from derive.kinematics.sampling import sample_axes
@@ -110,8 +112,21 @@ def values_at(machine: Machine, pose: Pose) -> Values:
     """The values of a description by name: parameters, joint values, and the pose of the tool."""
     mechanism = machine.kinematics.mechanism
     values = dict(machine.values)
+    if mechanism.drives:
+        values |= _joints_of(mechanism, values, pose)
     for joint, axis in zip(mechanism.joints, pose.axes, strict=True):
+        if joint.loops:
+            continue
         motor = np.asarray(axis * float(evaluate(joint.unit, values)))
         values[joint.motor.name] = motor
         values[joint.symbol.name] = np.asarray(motor * evaluate(joint.ratio, values) + evaluate(joint.coupling, values))
     return values | {name: np.asarray(value) for name, value in zip(FRAME, pose.frame, strict=True)}
+
+
+def _joints_of(mechanism: Mechanism, values: Values, pose: Pose) -> Values:
+    """The values of joints that loops move, and of what is between these."""
+    names = {s for j in mechanism.joints for loop in j.loops for s in (loop.moved, loop.by)}
+    outputs = [Output(s.name, s) for s in sorted(names, key=str)]
+    axes = {j.axis.name: np.asarray(axis) for j, axis in zip(mechanism.joints, pose.axes, strict=True)}
+    found, _ = run(normalise("joints", joint_lets(mechanism), outputs), {**values, **axes})
+    return found

@@ -144,6 +144,8 @@ class Scene:
     """Lengths and angles that are zero in this machine."""
     arcs: tuple[Arc, ...] = ()
     belt: Belt | None = None
+    loops: tuple[tuple[sp.Expr, tuple[sp.Expr, ...]], ...] = ()
+    """The joints of a chain that loops move, each with the lengths of its loop."""
 
     @property
     def meetings(self) -> tuple[tuple[Point, tuple[sp.Expr, ...]], ...]:

@@ -10,6 +10,7 @@ chain_splits: a chain as T = L M S (Paul, Pieper), and the equations of its posi
 choices: flags and signs of a machine, which are numbers in equations and choices in programs
 closures/: the closure equations: as data, as a mechanism states them, and for the commanded coordinates
 conditions: values of parameters that must not vanish where the derivation is to hold
+drives: joints that loops move: from the motor to the joint and back
 known_turns: rotations that are known: their matrices, and names for their entries
 limits: the test of the limits
 named_pose: the pose of a spatial chain, with a name for every entry of every frame

@@ -9,6 +9,7 @@ from functools import cache
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism
+from derive.equations.drives import joint_of_motor, motor_of_joint, renamed
 from derive.equations.problem import StepDeterminant
 from derive.ir.constants import DEGREE, LARGEST
 from derive.ir.primitives import Atan2, NearestPeriod, Select, ToReal, Wrap
@@ -33,11 +34,14 @@ def _is_reasonable(symbol: sp.Symbol) -> sp.Basic:
     return compared(sp.Le, sp.Abs(symbol), LARGEST)
 
 
-def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Joint values from axis values, in radians and lengths."""
-    lets: list[Let] = []
+def joint_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """Joint values from axis values, in radians and lengths; refused where a loop that moves a joint does not close."""
+    lets: list[Statement] = []
     for joint in mechanism.joints:
         motor = (joint.axis - joint.offset) * joint.unit
+        if joint.loops:
+            lets += [Let(joint.motor, motor), *joint_of_motor(mechanism, joint)]
+            continue
         lets += _motor_and_joint(motor, joint.motor, joint.symbol, (joint.ratio, joint.coupling))
     return tuple(lets)
 
@@ -64,6 +68,10 @@ def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     lets: list[Let] = []
     for joint in mechanism.joints:
         motor = (joint.reference - joint.offset) * joint.unit
+        if joint.loops:
+            names = {joint.motor: _reference_motor(joint), joint.symbol: reference_value(joint)}
+            lets += [Let(_reference_motor(joint), motor), *renamed(joint_of_motor(mechanism, joint), names)]
+            continue
         gear = (joint.ratio, joint.coupling.xreplace(table))
         lets += _motor_and_joint(motor, _reference_motor(joint), reference_value(joint), gear)
     return tuple(lets)
@@ -81,6 +89,8 @@ def reference_value(joint: Joint) -> sp.Symbol:
 def axis_lets(joint: Joint) -> tuple[Let, ...]:
     """The axis value of a solved joint: its period chosen, its offset added, its gear coupling subtracted."""
     motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
+    if joint.loops:  # statements of their own bind the axis: see `axes_of_drives`
+        return ()
     if not joint.is_angle:
         return (Let(joint.axis, _axis_of(joint, joint.symbol / joint.unit)), motor)
     direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
@@ -95,6 +105,19 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
         Let(joint.axis, NearestPeriod(direction / DEGREE + shift, near), turn_of=joint.name),
         motor,
     )
+
+
+def axes_of_drives(mechanism: Mechanism, resolved: set[sp.Symbol]) -> tuple[Statement, ...]:
+    """The axis values of the solved joints that loops move. resolved: the names that have a value."""
+    statements: list[Statement] = []
+    for joint in mechanism.joints:
+        if not joint.loops or joint.axis in resolved:
+            continue
+        functions = ((cosine, sp.cos), (sine, sp.sin)) if joint.is_angle else ()
+        statements += [Let(f(joint.symbol), g(joint.symbol)) for f, g in functions if f(joint.symbol) not in resolved]
+        statements += motor_of_joint(mechanism, joint)
+        statements.append(Let(joint.axis, joint.motor / joint.unit + joint.offset))
+    return tuple(statements)
 
 
 def _turned(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
@@ -133,6 +156,8 @@ def plain_angle(joint: Joint) -> Let:
     """The joint value with its whole turns, for equations in which the angle stands outside sines and cosines."""
     shift = joint.offset - joint.coupling / joint.unit
     value = (joint.axis - shift) * joint.unit
+    if joint.loops:
+        value = Wrap(Atan2(sine(joint.symbol), cosine(joint.symbol)))
     if joint.is_geared:
         value = (joint.axis - joint.offset) * joint.unit * joint.ratio + joint.coupling
     return Let(joint.symbol, value, f"{joint.name}: joint value with its whole turns")

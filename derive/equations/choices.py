@@ -19,7 +19,7 @@ from sympy.core.relational import Relational
 from derive.description.mechanism import Parameter, Role
 from derive.ir.passes import with_inputs
 from derive.ir.primitives import Select, ToReal
-from derive.ir.program import Output, Program, Statement, rewritten
+from derive.ir.program import Output, Program, Statement, rewritten, shared
 from derive.ir.symbols import count, flag, real
 
 _NAMED = {Role.FLAG: flag, Role.SIGN: count}
@@ -31,7 +31,9 @@ def input_of(parameter: Parameter) -> sp.Symbol:
 
 
 def with_choices(program: Program, parameters: Sequence[Parameter]) -> Program:
-    """The program with a choice in place of every calculation with a flag of the machine."""
+    """The program with a choice in place of every calculation with a flag of the machine; so in those it calls."""
+    called = {p.name: with_choices(p, parameters) for p in shared([program])}
+    program = replace(program, body=tuple(s.calling(called) for s in program.body))
     for name in (p.name for p in parameters if p.role is Role.FLAG):
         if real(name) in program.inputs:
             body = tuple(rewritten(s, partial(_chosen, name=name)) for s in program.body)

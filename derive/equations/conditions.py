@@ -24,7 +24,7 @@ def with_conditions(mechanism: Mechanism, values: Iterable[sp.Expr]) -> Mechanis
         terms = sp.Add.make_args(sp.expand(sp.sympify(value).xreplace(written)))
         largest = sp.Add(*[sp.Abs(t.replace(_is_turn, lambda *_: sp.Integer(1))) for t in terms])
         words = str(shown.xreplace({DEGREE: sp.Integer(1)})).replace("*", " ")
-        message = f"{words} must not vanish: slides would be parallel"
+        message = f"{words} must not be 0: parallel slides"
         found.append(Constraint(sp.Gt(sp.Abs(shown), SHORTEST_LINK * largest), message))
     return replace(mechanism, constraints=(*mechanism.constraints, *found)) if found else mechanism
 

@@ -24,9 +24,11 @@ def limits_program(mechanism: Mechanism) -> Program:
     turns = _other_turns(mechanism)
     body: list[Statement] = []
     for joint in sorted(mechanism.joints, key=lambda j: not j.multi_turn):  # a wrong turn is refused first
-        reason = replace(
-            about_joint(joint.symbol, Why.BELOW, unit=_unit(joint.in_degrees)), turns=turns.get(joint.key, ())
-        )
+        unit = _unit(joint.in_degrees)
+        below = about_joint(joint.symbol, Why.BELOW, unit=unit)
+        if joint.loops:  # its value is that of the joint that it moves
+            below = about(joint.name, Why.BELOW, unit=unit)
+        reason = replace(below, turns=turns.get(joint.key, ()))
         body += _inside(joint.key, joint.axis, reason, f"limits of {joint.name}")
     if mechanism.limited:
         body += joint_lets(mechanism)

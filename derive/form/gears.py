@@ -34,7 +34,7 @@ def with_gears(mechanism: Mechanism) -> Mechanism:
     symbols = tuple(j.symbol for j in mechanism.joints)
     arguments = _arguments(mechanism)
     turned = {s for argument in arguments for s in argument.free_symbols}
-    driving = {j.symbol for j in mechanism.joints if j.kind is Kind.ROTARY and j.symbol not in turned}
+    driving = {j.symbol for j in mechanism.joints if j.kind is Kind.ROTARY and not j.loops and j.symbol not in turned}
     forms = tuple(dict.fromkeys(f for a in arguments if (f := _form(a, symbols)) is not None))
     angles = tuple(s for s in symbols if any(f.has(s) for f in forms))
     is_plain = not forms or _is_plain(mechanism, forms, angles)
@@ -218,6 +218,8 @@ def _same(joint: Joint, mechanism: Mechanism) -> Joint:
 def _checked(mechanism: Mechanism) -> Mechanism:
     """The mechanism, checked: its gears are never zero."""
     for joint in mechanism.joints:
+        if joint.loops and (joint.ratio != 1 or joint.coupling != 0):
+            raise DescriptionError(f"joint {joint.moved_name!r} is driven by a loop: state its gear in the loop")
         if joint.ratio == 1:
             continue
         if not joint.ratio.is_nonzero:

@@ -14,6 +14,7 @@ inverse: inverse kinematics of one branch, for a pose or for a point off the fla
 kinematics: the bundle that all later folders read: every program of a mechanism, the meanings of its names, test cases
 lost_digits/: where a closed form has lost digits, steps on the closure meet the pose
 margins: the singularity margins of a machine that is solved in closed form
+measured/: the programs of a serial machine that has its deviations as inputs
 parameters: all inputs of a machine, and the setup program
 refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build; how often home finds a pose again

@@ -26,9 +26,10 @@ from derive.kinematics.flange_rotation import image_program, needs_twist, projec
 from derive.kinematics.forward import at_point, derivation_at_axes, forward_program, orientation_program
 from derive.kinematics.inverse import Inverse, inverse_program, solve_offset
 from derive.kinematics.kinematics import Kinematics, Margin
-from derive.kinematics.lost_digits.closure_steps import Machine
 from derive.kinematics.lost_digits.doubts import meeting, with_doubts
+from derive.kinematics.lost_digits.machine import Machine
 from derive.kinematics.margins import samples_anywhere, singularity_program
+from derive.kinematics.measured.programs import Measured, measured_programs
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
 from derive.kinematics.sampling import sample_machine, with_share
@@ -47,6 +48,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     warning = almost_right_angles(mechanism)
     try:
         noted = replace(mechanism, notes=(*mechanism.notes, f"{warning}.")) if warning else mechanism
+        if noted.nominal:  # the drawing is derived; its deviations are inputs
+            noted = replace(noted, chain=noted.nominal.chain, drawn=noted.nominal.drawn, joints=noted.nominal.joints)
         found = with_free_names(noted, lambda further: replace(_built(prepared(noted, further)), further=dict(further)))
         return with_share(found)
     except (Unsolved, DescriptionError) as problem:
@@ -57,6 +60,8 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 def _built(mechanism: Mechanism) -> Kinematics:
     solution = solve_machine(mechanism)
+    if mechanism.nominal and isinstance(solution, Scanned):
+        raise DescriptionError("an arm whose joint is searched for roots has no programs with deviations yet")
     return _scanned(solution) if isinstance(solution, Scanned) else _closed_form(solution)
 
 
@@ -68,23 +73,26 @@ def _closed_form(solved: Solved) -> Kinematics:
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
     machine = Machine(mechanism, inverse, assignments, at_axes)
-    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
+    statements, doubts = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     at_home = joints_at_home(mechanism, statements) if mechanism.is_platform else ()
     at_poses = _samples(mechanism, inverse, at_home, jacobian)
     singularity, kept = singularity_program(mechanism, at_axes, solved.factors, jacobian, at_poses)
     forward_only = replace(forward, statements=at_axes)
     last = _last(mechanism, closed, statements, offset=False)
     again = found_again(mechanism) if mechanism.is_platform else ()
+    branch = inverse_program("branch", mechanism, inverse, statements, last, again)
     programs = [
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
-        meeting(machine, inverse_program("branch", mechanism, inverse, statements, last, again)),
+        branch if mechanism.nominal else meeting(machine, branch, doubts),
         limits_program(mechanism),
         singularity,
         jacobian,
         image_program(mechanism),
     ]
     programs += _further_programs(mechanism, closed, inverse)
+    if mechanism.nominal:
+        programs = measured_programs(Measured(mechanism, machine, forward_only, margins, doubts), programs)
     return bundle_of(solved, programs, kept, at_home)
 
 
@@ -170,10 +178,10 @@ def _offset_programs(mechanism: Mechanism, closed: Assembled, conditions: tuple[
         ) from None
     at_axes = derivation_at_axes(mechanism, inverse, at_point(forward))
     machine = Machine(mechanism, inverse, assignments, at_axes, is_point=True)
-    statements = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
+    statements, doubts = with_doubts(machine, with_branch_signs(inverse.derivation.statements, assignments))
     last = _last(mechanism, closed, statements, offset=True)
     return [
-        meeting(machine, inverse_program("offset_branch", mechanism, inverse, statements, last)),
+        meeting(machine, inverse_program("offset_branch", mechanism, inverse, statements, last), doubts),
         _offset_configuration(mechanism, inverse, forward, assignments),
     ]
 

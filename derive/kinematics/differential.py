@@ -10,6 +10,7 @@ from derive.description.mechanism import DescriptionError, Mechanism, Plane, Tur
 from derive.equations.axes import Forward
 from derive.equations.chain_splits import is_spatial
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
+from derive.equations.drives import rate
 from derive.equations.named_pose import named_pose
 from derive.equations.pitch.chain import followed_factors
 from derive.equations.trigonometry import named_trigonometry
@@ -29,6 +30,7 @@ _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
 axis."""
 TWIST_ROWS = _ROWS[:6]
 """The rows of a twist along and about the axes of the base."""
+_END = sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
 _FOLLOWED = ("pitch", "roll")
 """The rows of a twist about the axes of the turns that follow the commanded rotation, where the first turns do not."""
 _TURNS: dict[Turning, tuple[str, ...]] = {
@@ -51,32 +53,41 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """The Jacobian: a row per quantity of the task, a column per axis; rotary axes per radian."""
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return normalise("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
+        return normalise("jacobian", (*forward.statements, *solved), entries_of(twists, len(mechanism.joints)))
     statements, values = jacobian_entries(mechanism)
-    return normalise("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
+    return normalise("jacobian", (*forward.statements, *statements), entries_of(values, len(mechanism.joints)))
 
 
 def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     """All six rows of the twist, whatever the task: a coupling needs them."""
     width = len(mechanism.joints)
     if mechanism.chain is not None:
-        lets, values = _per_motor(mechanism, _by_screws(mechanism, TWIST_ROWS))
-        return normalise("twist", (*forward.statements, *lets), _entries_of(values, width))
+        lets, values = chain_entries(mechanism, TWIST_ROWS)
+        return normalise("twist", (*forward.statements, *lets), entries_of(values, width))
     solved, values = (
         platform_jacobian(mechanism, _motor_matrix(mechanism)) if mechanism.is_platform else jacobian_entries(mechanism)
     )
     own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
     entries = [e for row in TWIST_ROWS for e in own.get(row, [sp.Integer(0)] * width)]
-    return normalise("twist", (*forward.statements, *solved), _entries_of(entries, width))
+    return normalise("twist", (*forward.statements, *solved), entries_of(entries, width))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The statements for the Jacobian at a pose that forward kinematics has found, and its entries by rows."""
     if mechanism.chain is not None:
-        return _per_motor(mechanism, _by_screws(mechanism, jacobian_rows(mechanism)))
+        return chain_entries(mechanism, jacobian_rows(mechanism))
     matrix, naming = _by_closure(mechanism)
     lets, values = _per_motor(mechanism, matrix)
     return (*naming, *lets), values
+
+
+def chain_entries(
+    mechanism: Mechanism, rows: Sequence[str], screws: Sequence[Screw] = ()
+) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The statements and the entries of these rows for a chain. screws: those of the true chain of a machine that has
+    deviations.
+    """
+    return _per_motor(mechanism, _by_screws(mechanism, rows, screws))
 
 
 def solved_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -92,31 +103,36 @@ def scaled_entries(mechanism: Mechanism, entries: Sequence[sp.Expr]) -> tuple[sp
     joints = mechanism.solved_joints
     found = []
     for k, value in enumerate(entries):
-        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].is_angle
+        is_place, is_slide = k // len(joints) < len(mechanism.task.position), not joints[k % len(joints)].axis_is_angle
         power = int(is_slide) - int(is_place)
         found.append(value * SCALE**power)
     return tuple(found)
 
 
-def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The entries per velocity of a motor, with names for their sines and cosines."""
-    coupled = matrix * _motor_matrix(mechanism)
+    rates = {k: rate(mechanism, j) for k, j in enumerate(mechanism.joints) if j.loops}
+    motors = _motor_matrix(mechanism)
+    for k, (_, value) in rates.items():
+        motors[k, k] = value
+    coupled = matrix * motors
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return lets, values
+    return (*(s for statements, _ in rates.values() for s in statements), *lets), values
 
 
-def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
+def entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
+    """The entries of a Jacobian, given by rows, as outputs."""
     return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
 
 
-def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
+def _by_screws(mechanism: Mechanism, rows: Sequence[str], given: Sequence[Screw] = ()) -> sp.Matrix:
     """The Jacobian of a serial chain: every factor moves its end as a screw, times the derivative of the factor by the
     joint.
     """
     assert mechanism.chain is not None
-    screws, position = _screws(mechanism, mechanism.chain)
+    screws, position = (given, _END) if given else _screws(mechanism, mechanism.chain)
     columns = []
     for joint in mechanism.joints:
         column = sp.zeros(6, 1)
@@ -143,7 +159,7 @@ def _followed(mechanism: Mechanism) -> tuple[int, ...]:
 def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
     """The screws of a chain and the position of its end; for a spatial chain in the names of its frames."""
     if is_spatial(chain):
-        return named_pose(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
+        return named_pose(mechanism).screws, _END
     pose = pose_of(chain)
     return pose.screws, pose.position
 

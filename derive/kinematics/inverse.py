@@ -8,7 +8,15 @@ import sympy as sp
 
 from derive.algebra.normal_form import polynomial
 from derive.description.mechanism import COORDINATE_NAMES_OF_A_PLANE, DescriptionError, Joint, Mechanism, Turning
-from derive.equations.axes import axis_lets, finite, frozen_lets, plain_angle, reference_lets, reference_value
+from derive.equations.axes import (
+    axes_of_drives,
+    axis_lets,
+    finite,
+    frozen_lets,
+    plain_angle,
+    reference_lets,
+    reference_value,
+)
 from derive.equations.closures.closure import FLANGE, Closure
 from derive.equations.closures.commanded import closure_at, flange_rotation, offset_closure, pose_closure
 from derive.equations.closures.fixed_names import (
@@ -211,13 +219,16 @@ def inverse_program(
     """
     in_plane = tuple(_in_plane(mechanism, name, value) for name, value in inverse.closure.planes)
     resolved = {s.name for s in statements if isinstance(s, Let)}
-    axes = tuple(
+    frozen = {j.axis for j in inverse.frozen}
+    known = frozen | {s.name for s in (*inverse.naming, *statements) if isinstance(s, Let)}
+    axes: tuple[Statement, ...] = tuple(
         of_angle(let, j, resolved)
         for j in mechanism.joints
         if j not in inverse.frozen
         for let in axis_lets(j)
         if let.name not in resolved
     )
+    axes += axes_of_drives(mechanism, known)
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
     body = renamed_in((*inverse.naming, *in_plane, *statements, *last, *axes, *of_axes), commanded(mechanism))
     draft = normalise(name, body, outputs)

@@ -224,7 +224,7 @@ class Kinematics:
     @property
     def unlimited_values(self) -> dict[str, float]:
         """The inputs of the machine by which formulas are measured: without limits, so that every pose counts."""
-        return {p.name: 0.0 if p.name in self.limit_inputs else p.nominal for p in self.parameters}
+        return {p.name: 0.0 if p.name in self.limit_inputs else p.tested for p in self.parameters}
 
     @property
     def limited(self) -> tuple[Limited, ...]:
@@ -236,7 +236,7 @@ class Kinematics:
         """The axes whose squared differences decide an automatic choice: the rotary ones, or all
         if there is none.
         """
-        angles = tuple(j for j in self.mechanism.joints if j.is_angle)
+        angles = tuple(j for j in self.mechanism.joints if j.axis_is_angle)
         return angles or self.mechanism.joints
 
 

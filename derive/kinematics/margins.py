@@ -96,7 +96,7 @@ def _scaled_jacobian(
     flat = np.stack([np.broadcast_to(v, (count,)) for v in entries.values()], axis=-1)
     size = size_of(mechanism, samples)
     by_rows = np.array([1.0 / size if row in COORDINATE_NAMES else 1.0 for row in rows])
-    by_columns = np.array([1.0 if j.is_angle else size for j in columns])
+    by_columns = np.array([1.0 if j.axis_is_angle else size for j in columns])
     matrix = flat.reshape(count, len(rows), len(columns)) * by_rows[:, None] * by_columns
     return np.asarray(matrix[:, :, [j in mechanism.solved_joints for j in columns]])
 

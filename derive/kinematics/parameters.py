@@ -108,9 +108,9 @@ def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float]
 
 
 def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] | None) -> Parameter:
-    low, high = interval or (-1e9, 1e9)
+    ends = (-float(LARGEST), float(LARGEST))
     role = Role.ANGLE if unit == "deg" else Role.DISTANCE
-    return Parameter(real(name), name, role, meaning, unit, low, high, False, 0.0, 0.0)
+    return Parameter(real(name), name, role, meaning, unit, *ends, False, 0.0, 0.0, usual=interval)
 
 
 def setup_program(
@@ -200,7 +200,7 @@ def _as_constant(parameter: Parameter) -> Output:
 
 def chooses_by_lengths(mechanism: Mechanism) -> bool:
     """Whether the distance of a branch to the reference is measured by linear axes alone."""
-    return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
+    return bool(mechanism.branches) and not any(j.axis_is_angle for j in mechanism.joints)
 
 
 def machine_scale(mechanism: Mechanism) -> sp.Expr:

@@ -30,10 +30,11 @@ def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False)
     generator = np.random.default_rng(seed)
     values: Samples = {}
     nominal = unlimited_values(mechanism)
+    needed = {s for j in mechanism.joints for loop in j.loops for s in loop.equation.free_symbols}
     for parameter in machine_parameters(mechanism):
         spread, value = generator.uniform(0.8, 1.2), nominal[parameter.name]
         value = value if parameter.role in (Role.FLAG, Role.SIGN) else value * spread
-        if optional_zero and parameter.role is Role.DISTANCE:
+        if optional_zero and parameter.role is Role.DISTANCE and parameter.symbol not in needed:
             value = 0.0
         values[parameter.name] = np.asarray(value)
     return _with_scale(mechanism, values | fixed_values(mechanism))
@@ -115,6 +116,9 @@ def _inside_limits(joint: Joint, machine: Samples, values: tuple[float, float], 
 
 def _range_of(joint: Joint, size: float) -> tuple[float, float]:
     """The values of a joint that are tried: of a slide those up to once or twice the size of the machine."""
+    if joint.loops:
+        low, high = joint.limits or ((-90.0, 90.0) if joint.in_degrees else (-joint.nominal / 2, joint.nominal / 2))
+        return (low, high) if joint.limits else (low + joint.nominal, high + joint.nominal)
     if joint.is_angle:
         low, high = joint.domain or (-180.0, 180.0)
         return low, min(high, 1e3)

@@ -5,17 +5,20 @@ The build makes its programs from it and keeps it; the report, its pictures and 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.description.mechanism import DescriptionError, Joint, Mechanism, Turning
 from derive.equations.chain_splits import is_spatial
 from derive.equations.conditions import with_conditions
+from derive.equations.drives import size, slopes
 from derive.equations.pitch.chain import followed_of
 from derive.equations.problem import Conditioning
 from derive.form.machine import in_form
+from derive.ir.constants import LEAST
+from derive.ir.primitives import Root, Select
 from derive.kinematics.branches.assembly import Assembled, assembled, with_derived_assembly
 from derive.kinematics.branches.assignment import Assignment, assign
 from derive.kinematics.branches.derived import with_derived_branches
@@ -29,6 +32,8 @@ from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_fixed_point, with_positive_lengths, with_stated_rods
+
+_MOTOR = "motor_"
 
 
 @dataclass(frozen=True)
@@ -47,11 +52,26 @@ class Solved:
         """The factors of the determinants of the two Jacobians, one for each kind of singularity."""
         steps: list[Assignment | Conditioning] = [*self.assignments, *self.inverse.derivation.conditionings]
         found = [factor_of(self.mechanism, one) for one in steps]
+        found += [one for joint in self.mechanism.joints for one in _of_loops(self.mechanism, joint)]
         if self.mechanism.passive:
             found.append(Factor(GUIDES, guides_determinant(self.mechanism)))
         if self.closed.margin is not None:
             found.append(Factor(self.closed.name, self.closed.margin))
         return tuple(found)
+
+
+def _of_loops(mechanism: Mechanism, joint: Joint) -> Iterator[Factor]:
+    """The dead points of the loops that move a joint: where its motor does not move it, and where it is free. A
+    cylinder always moves its lever: it has one margin, the lever arm over the mean of both arms.
+    """
+    for loop, by_moved, by_motor in slopes(mechanism, joint, names=False):
+        if loop.by not in loop.vector.free_symbols:
+            arm = by_moved / Select(sp.Gt(sp.Abs(by_motor), LEAST), by_motor, sp.Integer(1))
+            longest = Root(size(mechanism, loop, loop.moved) / 2) if loop.turns[0] else sp.Integer(1)
+            yield Factor(f"lever_{loop.moved.name}", arm / longest)
+            continue
+        yield Factor(f"crank_{loop.by.name.removeprefix(_MOTOR)}", by_motor / size(mechanism, loop, loop.by))
+        yield Factor(f"lever_{loop.moved.name}", by_moved / size(mechanism, loop, loop.moved))
 
 
 Solution = Solved | Scanned

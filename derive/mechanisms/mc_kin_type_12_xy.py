@@ -36,8 +36,8 @@ MECHANISM = Mechanism(
     bars=(rod("forearm", T, TCP, L2), rod("rear", T, E, L3), rod("rod", W, E, L4)),
     task=Task("xy"),
     branches=(
-        branch("t", cross(minus(ORIGIN, TCP), minus(T, TCP)), margin="stretched_1", left=+1, right=-1),
-        branch("w", cross(minus(ORIGIN, E), minus(W, E)), margin="stretched_2", left=+1, right=-1),
+        branch("elbow", cross(minus(ORIGIN, TCP), minus(T, TCP)), margin="stretched_1", left=+1, right=-1),
+        branch("crank", cross(minus(ORIGIN, E), minus(W, E)), margin="stretched_2", left=+1, right=-1),
     ),
     assembly=assembly(
         "e", MIRROR * cross(minus(W, T), minus(E, T)), margin="arms_aligned", handedness=MIRROR, left=+1, right=-1
@@ -47,5 +47,10 @@ MECHANISM = Mechanism(
             longest < L1 + L3 + L4 + L5 - longest, f"link {k} must be shorter than the other links of the loop together"
         )
         for k, longest in ((1, L1), (3, L3), (4, L4), (5, L5))
+    ),
+    notes=(
+        "elbow: on which side of the line from the TCP to the origin T is, the end of the upper arm, seen along this "
+        "line. crank: on which side of the line from E to the origin W is, the end of the crank. In the mirrored "
+        "reading left and right are exchanged.",
     ),
 )

@@ -122,10 +122,10 @@ def _candidates(machine: Machine) -> Iterator[Reals]:
     """Axis values near the nominal ones, or near the home pose of a loop that turns its platform."""
     mechanism = machine.kinematics.mechanism
     start = machine.home if mechanism.home else tuple(j.nominal for j in mechanism.joints)
-    turned = [_ANGLES[k % len(_ANGLES)] if j.is_angle else 0.0 for k, j in enumerate(mechanism.joints)]
+    turned = [_ANGLES[k % len(_ANGLES)] if j.axis_is_angle else 0.0 for k, j in enumerate(mechanism.joints)]
     for part in (1.0, 0.5, -1.0, 0.0):
         yield tuple(float(a + part * b) for a, b in zip(start, turned, strict=True))
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") or 500.0
-    spread = [_AROUND if j.is_angle else 0.2 * size for j in mechanism.joints]
+    spread = [_AROUND if j.axis_is_angle else 0.2 * size for j in mechanism.joints]
     for row in np.random.default_rng(1).uniform(-1.0, 1.0, (_TRIED, len(start))).tolist():
         yield tuple(float(a + r * s) for a, r, s in zip(start, row, spread, strict=True))

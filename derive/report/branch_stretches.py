@@ -88,8 +88,8 @@ def _groups(items: Sequence[Item], signs: Sequence[sp.Symbol]) -> list[tuple[fro
         needed = given_to((item,)) | _read_by_reason(item)
         own = frozenset[sp.Symbol]().union(*(support.get(name, frozenset()) for name in needed))
         first = max((place[name] for name in needed if name in place), default=0)
-        earlier = [k for k in range(first, len(groups)) if groups[k][0] == own]
-        if earlier and (earlier[0] == len(groups) - 1 or not _must_stay(item)):
+        earlier = [k for k in range(first, len(groups)) if groups[k][0] == own and _may_move(item, groups[k + 1 :])]
+        if earlier:
             at = earlier[0]
         elif groups and groups[-1][0] == own:
             at = len(groups) - 1
@@ -107,10 +107,19 @@ def _read_by_reason(item: Item) -> set[sp.Symbol]:
     return {s for value in reason_expressions(item) for s in names_in(value)} if isinstance(item, Require) else set()
 
 
-def _must_stay(item: Item) -> bool:
-    """Whether a statement refuses, or divides by what an earlier refusal may keep from zero."""
+def _may_move(item: Item, groups: Sequence[tuple[frozenset[sp.Symbol], list[Item]]]) -> bool:
+    """Whether a statement may stand before these groups: it does not refuse, and divides by nothing that a refusal in
+    them may keep from zero.
+    """
+    if not groups:
+        return True
     powers = (power for e in expressions_in((item,)) for power in e.atoms(sp.Pow))
-    return isinstance(item, Require | Call) or any(power.exp.is_negative and power.base != DEGREE for power in powers)
+    divides = any(power.exp.is_negative and power.base != DEGREE for power in powers)
+    return not _refuses(item) and not (divides and any(_refuses(i) for _, group in groups for i in group))
+
+
+def _refuses(item: Item) -> bool:
+    return isinstance(item, Require | Call)
 
 
 def _computes(expression: sp.Basic) -> bool:

@@ -99,6 +99,8 @@ class Costs:
     corners: Cost
     """The additional cost of a branch at a singular pose: the second sides of choices."""
     bounds: tuple[Bound, ...]
+    corner: str
+    """Where it is added: a machine with deviations adds it wherever it is."""
 
 
 _PRIMITIVES: dict[type[sp.Basic], Cost] = {
@@ -132,6 +134,7 @@ def costs_of(kinematics: Kinematics) -> Costs:
         repair=exact + _with_refusals(rotation_program()) if kinematics.reads_rotation else Cost(),
         corners=_with_refusals(kinematics.branch) + branch * -1,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
+        corner="a branch with deviations" if kinematics.mechanism.nominal else "a branch at a singular pose",
     )
 
 

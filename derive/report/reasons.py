@@ -107,7 +107,7 @@ def reasons_of(kinematics: Kinematics) -> Reasons:
     without = (replace(p, body=tuple(_unexplained(p.body))) for p in programs)
     if any(p.requires() for p in shared(without)):
         raise TypeError(f"{kinematics.mechanism.name}: the inverse calls a program that gives no reasons")
-    return Reasons({j.symbol.name: j.name for j in kinematics.mechanism.joints})
+    return Reasons({j.symbol.name: j.moved_name for j in kinematics.mechanism.joints})
 
 
 def _unexplained(statements: Iterable[Statement]) -> Iterator[Statement]:

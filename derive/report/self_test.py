@@ -77,7 +77,7 @@ def _nominal(kinematics: Kinematics) -> Machine:
 
 def _scaled(machine: Machine, joint: Joint, value: float) -> float:
     """The value of an axis as it is, or a length as small as the machine is."""
-    return value if joint.is_angle else round(value * 10.0**-machine.smaller, _DECIMALS + machine.smaller)
+    return value if joint.axis_is_angle else round(value * 10.0**-machine.smaller, _DECIMALS + machine.smaller)
 
 
 def _refused(nominal: Machine) -> Machine | None:
@@ -209,7 +209,7 @@ class _Vectors:
         """A reference that differs from the answer."""
         if self._mechanism.search:
             return axes
-        steps = (17.3 if j.is_angle else 1.7 for j in self._mechanism.joints)
+        steps = (17.3 if j.axis_is_angle else 1.7 for j in self._mechanism.joints)
         return tuple(round(a + (k + 1) * step, 6) for k, (a, step) in enumerate(zip(axes, steps, strict=True)))
 
     def _forward(self, axes: Reals) -> Case:
@@ -247,7 +247,7 @@ class _Vectors:
         or at a right angle.
         """
         for k, joint in enumerate(self._mechanism.joints):
-            for value in (0.0, 90.0, -90.0, 180.0) if joint.is_angle else (0.0,):
+            for value in (0.0, 90.0, -90.0, 180.0) if joint.axis_is_angle else (0.0,):
                 zero = self.machine.given[joint.offset.name]
                 axes = (*self.poses[0][:k], round(value + zero, 6), *self.poses[0][k + 1 :])
                 found = np.abs(margins(self.machine, [axes]))
@@ -303,7 +303,7 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
         drawn = np.stack([samples[j.axis.name] * _stretch(machine, j) for j in mechanism.joints], axis=1)
     else:
         return [()]
-    angles = [j.is_angle for j in mechanism.joints]
+    angles = [j.axis_is_angle for j in mechanism.joints]
     return [
         tuple(
             round(float(v), 1 if is_angle else 1 + machine.iterations) for v, is_angle in zip(row, angles, strict=True)
@@ -314,6 +314,6 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
 
 def _stretch(machine: Machine, joint: Joint) -> float:
     """The range of an axis: several turns where it has them; a default for a machine without lengths."""
-    if joint.is_angle:
+    if joint.axis_is_angle:
         return 2.0 if joint.multi_turn else 1.0
     return 1.0 if has_length(machine.kinematics.mechanism) else _SIZE

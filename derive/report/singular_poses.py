@@ -144,7 +144,7 @@ def _scales(machine: Machine) -> Array:
 def _starts(machine: Machine, start: Array, measure: Measure, place: int) -> Iterator[Array]:
     """The starts of the search: the given one, poses near it, and sampled poses, those with small margins first."""
     mechanism = machine.kinematics.mechanism
-    turned = np.array([_TURNS[k % 6] if j.is_angle else 0.0 for k, j in enumerate(mechanism.joints)])
+    turned = np.array([_TURNS[k % 6] if j.axis_is_angle else 0.0 for k, j in enumerate(mechanism.joints)])
     near = [start + part * turned for part in (0.4, 1.0, -0.4, 0.0)]
     good = measure(np.stack(near))[place]
     yield from (row for row, value in zip(near, good, strict=True) if np.isfinite(value) and value > SINGULAR)

@@ -25,7 +25,7 @@ import math
 
 from derive.description.mechanism import Mechanism
 from derive.kinematics.kinematics import Evidence, Inverted, Kinematics
-from derive.witness.checks import check_forward, check_jacobian, check_margins
+from derive.witness.checks import check_forward, check_jacobian, check_margins, check_signs
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.exact.proof import check_exactly
@@ -50,9 +50,13 @@ def witness(kin: Kinematics, described: Mechanism) -> Evidence:
             poses, error = check_jointless(kin, closure)
             return Evidence(poses, decade(error), None, check_exactly(kin, described))
         samples = regular_samples(kin, closure)
-        forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
+        forward = check_forward(kin, closure, samples)
         jacobian = check_jacobian(kin, closure, samples)
-        check_margins(kin, closure, samples)
+        if described.nominal is None:
+            forward = max(forward, check_orientation(kin, samples))
+            check_margins(kin, closure, samples)
+        else:  # margins, and what the flange can do, are those of the drawing, which is proven by itself
+            check_signs(kin, closure, samples)
         slots = all_slots(kin, samples)
         inverse, round_trip = check_inverse(kin, closure, samples, slots)
         offset, offset_trip = check_offset(kin, closure, samples)

@@ -120,7 +120,7 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     """√det(J Jᵀ) is one constant of each machine times the margins with their exponents; their
     signs are the branches'.
     """
-    _check_signs(kin, closure, samples)
+    check_signs(kin, closure, samples)
     outputs = run_regular(kin, kin.singularity, samples)
     expected = np.ones(len(samples))
     for margin in kin.margins:
@@ -135,7 +135,8 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     )
 
 
-def _check_signs(kin: Kinematics, closure: Closure, samples: Samples) -> None:
+def check_signs(kin: Kinematics, closure: Closure, samples: Samples) -> None:
+    """The signs of the margins of branches are those of their indicators."""
     indicators = closure.indicators(samples.joints, samples.pose, samples.parameters)[:, :, 0]
     for i, branch in enumerate(kin.branches):
         margin = samples.values[f"branch_{branch.name}"]

@@ -9,7 +9,7 @@ Functions work on rows of samples.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import casadi as ca
@@ -31,6 +31,7 @@ from derive.witness.frames import (
     followed_pose,
     frame_at,
     joint_values,
+    motor_of,
     moved_by,
     term,
     turn,
@@ -82,6 +83,8 @@ class Closure:
     """joints, parameters → what tells solutions apart: cosines and sines of all angles of the closure, then lengths"""
     turned: int
     """How many of the places are cosines and sines."""
+    motors: Rows
+    """joints, parameters → the motor values of the joints that loops move; zeros for others"""
     solved: NDArray[np.bool_]
     """Which joints the inverse solves for: the others keep the value of the reference."""
 
@@ -115,7 +118,8 @@ class Closure:
 
     def axis_scale(self, reach: Array) -> Array:
         """The unit of each axis, in degrees and lengths."""
-        return np.where(self.angles, np.degrees(1.0), reach[:, None])
+        turns = [j.in_degrees if j.loops else a for j, a in zip(self.described.joints, self.angles, strict=True)]
+        return np.where(turns, np.degrees(1.0), reach[:, None])
 
 
 def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
@@ -133,6 +137,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     motors = (axes - offsets) * ca.vertcat(*(term(j.unit, {}) for j in described.joints))
     joints = joint_values(described, motors, known)
     known |= {joint.symbol: q[i] for i, joint in enumerate(described.joints)}
+    drives = [motor_of(j, q[i], known) if j.loops else (ca.SX(0), ca.SX(1)) for i, j in enumerate(described.joints)]
     task = task_rows(described)
     rows = (*task, *_passive(described))
     twist = ca.SX.sym("twist", len(rows))
@@ -140,6 +145,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     residual, equations = _residual(described, known, moved)
     units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in described.joints))
     at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(rows))])
+    possible = [least for j, (_, least) in zip(described.joints, drives, strict=True) if j.loops]
     named = known | _position_symbols(pose)
     labels = _machine_symbols(described, machine, q, p) | _position_symbols(pose)
     state = (q, pose, p)
@@ -154,7 +160,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
         by_pose=Rows("by_pose", state, at_rest[1]),
         by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
         frame=Rows("frame", (q, p), _frame_of(described, known)),
-        positive=Rows("positive", state, _column(_positive(described, named, machine, labels))),
+        positive=Rows("positive", state, _column([*_positive(described, named, machine, labels), *possible])),
         indicators=Rows("indicators", state, _column(_indicators(described, named, machine, labels))),
         equations=equations,
         task=task,
@@ -164,6 +170,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
         rates=Rows("rates", (q, p), _rates(turned, q, is_angle)),
         places=Rows("places", (q, p), ca.vertcat(ca.cos(turned), ca.sin(turned), *(term(v, known) for v in lengths))),
         turned=2 * len(angles),
+        motors=Rows("motors", (q, p), _column([m for m, _ in drives])),
         solved=np.array([j not in described.held_joints for j in described.joints]),
     )
 
@@ -187,13 +194,18 @@ def _machine_symbols(described: Mechanism, machine: Mechanism, q: Term, p: Term)
     named = {m.symbol: columns[m.name] if m.fixed is None else float(m.nominal) for m in machine.parameters}
     given = {own.symbol: p[i] for i, own in enumerate(described.parameters)}
     motors = ca.SX.sym("motors", len(machine.joints))
-    own, others = (joint_values(m, motors, known) for m, known in ((described, given), (machine, named)))
+    geared = (_without_loops(m) for m in (described, machine))  # a joint that loops move has no gear
+    own, others = (joint_values(m, motors, known) for m, known in zip(geared, (given, named), strict=True))
     if ca.is_equal(own, others, 8):
         values = q
     else:
         values = ca.substitute(others, motors, ca.solve(ca.jacobian(own, motors), q))
     named |= {joint.symbol: values[i] for i, joint in enumerate(machine.joints)}
     return named | ({real(machine.assembly.parameter): p[-1]} if machine.assembly is not None else {})
+
+
+def _without_loops(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, drives=(), joints=tuple(replace(j, loops=()) for j in mechanism.joints))
 
 
 def _places(described: Mechanism) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
@@ -303,6 +315,10 @@ def _residual(mechanism: Mechanism, known: Symbols, pose: Term) -> tuple[Term, i
         pose = followed_pose(mechanism, known, pose)
     difference = frame_at(mechanism.chain, known) - pose
     own = ["xyz".index(c) for c in mechanism.task.position]
+    if mechanism.nominal and mechanism.task.turning is Turning.ABOUT_Z:  # its axes are tilted: it meets the turn alone
+        here, goal = (ca.reshape(r[3:], 3, 3).T for r in (difference + pose, pose))
+        left = here @ goal.T
+        return ca.vertcat(difference[own], ca.atan2(left[1, 0] - left[0, 1], left[0, 0] + left[1, 1])), len(own)
     column = [5, 8, 11]
     followed = {Turning.NONE: [], Turning.DIRECTION: column, Turning.PITCH: column}
     rotation = followed.get(mechanism.task.turning, list(range(3, 12)))

@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 import sympy as sp
 
+from derive.description.joints import Joint, Loop
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
@@ -44,8 +45,66 @@ def turn(axis: int, cosine: Term, sine: Term) -> Term:
 def joint_values(mechanism: Mechanism, motors: Term, known: Symbols) -> Term:
     """Joint = ratio * motor + coupling of the motors, in radians and lengths."""
     named = {**known, **{j.motor: motors[i] for i, j in enumerate(mechanism.joints)}}
-    values = (motors[i] * term(j.ratio, named) + term(j.coupling, named) for i, j in enumerate(mechanism.joints))
+    values = (
+        _moved(j, motors[i], known) if j.loops else motors[i] * term(j.ratio, named) + term(j.coupling, named)
+        for i, j in enumerate(mechanism.joints)
+    )
     return ca.vertcat(ca.SX.zeros(0, 1), *values)
+
+
+def _moved(joint: Joint, motor: Term, known: Symbols) -> Term:
+    """The value of a joint that loops move; not a number where one does not close, or is beyond its dead point."""
+    value, is_possible = motor, ca.SX(1)
+    for loop in joint.loops:
+        moved = _closed(loop, 0, value, known)
+        is_possible = ca.logic_and(is_possible, _slope(loop, 1, moved, value, known) > 0)
+        value = moved
+    return ca.if_else(is_possible, value, float("nan"))
+
+
+def motor_of(joint: Joint, value: Term, known: Symbols) -> tuple[Term, Term]:
+    """The motor value of a joint that loops move, and what is positive where loops close on their sides."""
+    is_possible = ca.SX(1)
+    for loop in reversed(joint.loops):
+        by = _closed(loop, 1, value, known)
+        slope = _slope(loop, 0, value, by, known)
+        is_possible, value = ca.logic_and(is_possible, slope > 0), by
+    return value, 2 * is_possible - 1
+
+
+def _closed(loop: Loop, sought: int, given: Term, known: Symbols) -> Term:
+    """What closes a loop, on its side: 0 for what it moves, 1 for what moves it.
+
+    The start is the textbook's, for a cosine or a square; two steps of Newton's method on the equation as it stands
+    then give the value, and by automatic differentiation its derivative.
+    """
+    unknown, other = (loop.moved, loop.by) if sought == 0 else (loop.by, loop.moved)
+
+    def open_by(value: Term) -> Term:
+        return term(loop.equation, {**known, other: given, unknown: value})
+
+    side = term(loop.sides[sought], known)
+    if loop.turns[sought]:
+        first, opposite, quarter = (open_by(a) for a in (0.0, np.pi, np.pi / 2))
+        level, along = (first + opposite) / 2, (first - opposite) / 2
+        across = quarter - level
+        reach = ca.sqrt(along**2 + across**2)
+        value = ca.atan2(across, along) - side * ca.acos(-level / reach)
+    else:
+        rest, after, before = (open_by(a) for a in (0.0, 1.0, -1.0))
+        square, slope = (after + before) / 2 - rest, (after - before) / 2
+        value = (-slope + side * ca.sqrt(slope**2 - 4 * square * rest)) / (2 * square)
+    for _ in range(2):
+        slope = term(sp.diff(loop.equation, unknown), {**known, other: given, unknown: value})
+        value = value - open_by(value) / slope
+    return value
+
+
+def _slope(loop: Loop, place: int, moved: Term, by: Term, known: Symbols) -> Term:
+    """The derivative of a loop by what it moves (0) or by what moves it (1), with the sign of its side: positive."""
+    named = {**known, loop.moved: moved, loop.by: by}
+    slope = sp.diff(loop.equation, (loop.moved, loop.by)[place])
+    return term(loop.sides[place], known) * term(slope, named)
 
 
 def moved_by(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term] = ()) -> Term:

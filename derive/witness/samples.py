@@ -116,6 +116,7 @@ def _drawn(
         axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
     else:
         axes = _axes(kin.mechanism, values, larger * reach, rng)
+        _move_loops(kin.mechanism, closure, axes, (parameters, reach), rng)
     values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
     joints = closure.joints(axes, parameters)[:, :, 0]
     outputs, status = run(kin.forward, values)
@@ -232,7 +233,7 @@ def _nominal(kin: Kinematics) -> dict[str, Array]:
 
 def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> Array:
     """Random values of one parameter; a parameter with a default keeps it in half of the machines."""
-    size = abs(parameter.nominal) or _SPREAD.get(parameter.role, largest)
+    size = abs(parameter.tested) or _SPREAD.get(parameter.role, largest)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
     elif parameter.role in (Role.SIGNED_LENGTH, Role.TRANSMISSION):
@@ -242,7 +243,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator, largest: float) -> A
     elif parameter.role is Role.SIGN:
         drawn = -np.ones(count)
     else:
-        drawn = parameter.nominal + size * rng.uniform(-1.0, 1.0, count)
+        drawn = parameter.tested + size * rng.uniform(-1.0, 1.0, count)
     drawn = np.clip(drawn, parameter.low, parameter.high)
     return drawn if parameter.default is None else np.where(rng.random(count) < 0.5, parameter.default, drawn)
 
@@ -251,7 +252,8 @@ def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
     if mechanism.is_platform:  # the sum of all its coordinates says little
         return values[SCALE.name]
     roles = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
-    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in roles]
+    own = (p for p in mechanism.parameters if p.role in roles and p.deviation is None)
+    lengths = [np.abs(values[p.name]) for p in own]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
     total = total + sum(_numbers(mechanism))
     legs = max(1, len(mechanism.rods))  # one leg of a loop
@@ -276,6 +278,25 @@ def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Gen
         motor = np.maximum(-size, low) * (1 - drawn) + np.minimum(size, high) * drawn
         columns.append(motor + (0.0 if joint.multi_turn else values[joint.offset.name]))
     return np.stack(columns, axis=1)
+
+
+def _move_loops(
+    mechanism: Mechanism, closure: Closure, axes: Array, machines: tuple[Array, Array], rng: Generator
+) -> None:
+    """Give axes whose joints loops move values at which these close, where they do: those of random joint values.
+
+    machines: their parameters, and their reaches.
+    """
+    driven = [i for i, j in enumerate(mechanism.joints) if j.loops]
+    if not driven:
+        return
+    parameters, reach = machines
+    sizes = np.where(closure.angles, np.pi, reach[:, None])
+    motors = closure.motors(rng.uniform(-1.0, 1.0, axes.shape) * sizes, parameters)[:, :, 0]
+    for i in driven:
+        offset = parameters[:, closure.parameters.index(mechanism.joints[i].offset.name)]
+        turned = (np.degrees(motors[:, i]) + 180.0) % 360.0 - 180.0
+        axes[:, i] = offset + (turned if mechanism.joints[i].in_degrees else motors[:, i])
 
 
 def turns_of(joint: Joint, values: dict[str, Array]) -> Array:

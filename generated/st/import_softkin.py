@@ -258,6 +258,8 @@ def main():
     errors = check(project)
     project.save()
     print("%d objects and %d pictures in %s; errors of the compiler: %d" % (count, pictures, path, errors))
+    if errors:
+        print("docs/CODESYS.md, section 10, says what to do with each message")
     return errors
 
 

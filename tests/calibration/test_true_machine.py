@@ -194,6 +194,22 @@ def test_batches_paths_and_choices_are_those_of_single_calls() -> None:
     assert line.stop is None and len({true.forward(step)[1][:3] for step in line.axes}) == 1
 
 
+@pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1"])
+def test_every_slot_is_on_its_branch(name: str) -> None:
+    """Next to a reference that meets the frame on one branch the others have their own solutions."""
+    machine = planted(name, np.random.default_rng(5))
+    for axes in drawn_axes(machine.nominal, 15, np.random.default_rng(6)):
+        frame, own = machine.true.forward(axes)
+        found = [s for s in machine.true.inverse_all(frame, axes) if s.axes is not None]
+        assert any(s.axes == pytest.approx(axes, abs=1e-7) for s in found)
+        for solution in found:
+            assert solution.axes is not None
+            there = machine.true.forward(solution.axes)[1]
+            pairs = zip(there, solution.configuration[: machine.true.BRANCHES], strict=False)
+            assert all(byte in (slot, 3) for byte, slot in pairs)
+        assert len({tuple(np.round(s.axes, 5)) for s in found if s.axes is not None}) == len(found) and own
+
+
 def test_what_the_nominal_machine_does_not_reach_is_answered() -> None:
     """Beyond the reach of the drawing a longer arm answers; beyond its own reach it refuses with what is missing."""
     nominal = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0)

@@ -39,8 +39,10 @@ class Closure:
         self.mechanism = mechanism
         self.constants = [float(parameters[p.name]) for p in mechanism.parameters]
         self.offsets = np.array([parameters[j.offset.name] for j in mechanism.joints], dtype=float)
-        self.units = np.array([ONE_DEGREE if j.is_angle else 1.0 for j in mechanism.joints])
-        self.angles = np.array([j.is_angle for j in mechanism.joints])
+        self.units = np.array([ONE_DEGREE if j.axis_is_angle else 1.0 for j in mechanism.joints])
+        self.angles = np.array([j.axis_is_angle for j in mechanism.joints])
+        self.turning = np.array([j.is_angle for j in mechanism.joints])
+        """Which joints are angles: a cylinder, whose axis is a length, may move one."""
         self.task = ["xyz".index(c) for c in mechanism.task.position]
         self.follows_turn = mechanism.task.turning is Turning.ABOUT_Z
         self.follows_rotation = mechanism.task.turning is not Turning.NONE
@@ -310,7 +312,7 @@ def derivative(function: Callable[..., Array], at: Array, *fixed: Array) -> Arra
 def _swings(first: Array, second: Array) -> Array:
     """The smallest rotations that take unit vectors to others."""
     axis, agree = np.cross(first, second), np.sum(first * second, axis=1)
-    cross = np.zeros((len(first), 3, 3))
+    cross = np.zeros((len(first), 3, 3), dtype=axis.dtype)
     cross[:, 2, 1], cross[:, 0, 2], cross[:, 1, 0] = axis.T
     cross[:, 1, 2], cross[:, 2, 0], cross[:, 0, 1] = -axis.T
     return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + agree)[:, None, None])

@@ -43,8 +43,8 @@ SPECIAL["Kin_Pos_RRR"] = {
 }
 APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY"}
 """Loops whose factors vanish together only where nothing controls the plate."""
-CANDIDATES = tuple(m for _, m in catalogue() if not m.is_platform and not m.is_orientation)
-SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z"}
+CANDIDATES = tuple(m for _, m in catalogue() if not (m.is_platform or m.is_orientation or m.drives))
+SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z", "Softkin_Transmit"}
 """Mechanisms with one factor."""
 PAIRED = tuple(m for m in CANDIDATES if softkin.catalogue()[m.name].MARGINS and m.name not in SINGLE)
 """Mechanisms with two factors or more."""

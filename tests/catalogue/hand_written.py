@@ -202,17 +202,85 @@ def _head_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0] + cc * ahead, q[1] + sc * ahead, z, rotation
 
 
+def _head_table_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The head leans to -Y, the table turns the workpiece from X to Y."""
+    ca, sa, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    y = q[1] + p["head_offset"] * ca + p["pivot_length"] * sa
+    z = q[2] + p["head_offset"] * sa - p["pivot_length"] * ca
+    rotation = ((cc, sc * ca, -sc * sa), (-sc, cc * ca, -cc * sa), (0 * sa, sa, ca))
+    return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
+
+
+def _head_head_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The fork turns the head about Z, the head leans to -Y."""
+    cc, sc, ca, sa = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    ahead = p["fork_offset"] + p["head_offset"] * ca + p["pivot_length"] * sa
+    z = q[2] + p["head_offset"] * sa - p["pivot_length"] * ca
+    rotation = ((cc, -sc * ca, sc * sa), (sc, cc * ca, -cc * sa), (0 * sa, sa, ca))
+    return q[0] - sc * ahead, q[1] + cc * ahead, z, rotation
+
+
+def _table_table_b(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The trunnion turns the workpiece from Z to X, the table on it from X to Y: the tool seen from there."""
+    cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    tip = q[2] - p["tool_length"]
+    x, z = cb * q[0] - sb * tip - p["pivot_x"], cb * tip + sb * q[0] - p["pivot_z"]
+    rotation = ((cc * cb, sc, -cc * sb), (-sc * cb, cc, sc * sb), (sb, 0 * sb, cb))
+    return cc * x + sc * q[1], cc * q[1] - sc * x, z, rotation
+
+
+def _about(axis: Sequence[float], angle: Array) -> Array:
+    """Rodrigues: the rotation about a unit vector, entry by entry."""
+    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    c, s = np.cos(angle), np.sin(angle)
+    return (
+        np.multiply.outer(np.eye(3), c) + np.multiply.outer(cross, s) + np.multiply.outer(np.outer(axis, axis), 1 - c)
+    )
+
+
+def _inclined(p: Mapping[str, float]) -> tuple[float, float, float]:
+    return 0.0, float(np.sin(np.radians(p["nutation"]))), float(np.cos(np.radians(p["nutation"])))
+
+
+def _nutating_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    fork, head = _about((0, 0, 1), q[3]), _about(_inclined(p), q[4])
+    arm = np.einsum("ij...,j->i...", head, [p["head_offset"], 0, -p["pivot_length"]])
+    arm = np.array([arm[0] + p["fork_offset"], arm[1], arm[2]])
+    tip = np.einsum("ij...,j...->i...", fork, arm)
+    rotation = np.einsum("ij...,jk...->ik...", fork, head)
+    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, rotation))
+
+
+def _nutating_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    carrier, table = _about(_inclined(p), -q[3]), _about((0, 0, 1), -q[4])
+    tip = np.einsum("ij...,j...->i...", carrier, np.array([q[0], q[1], q[2] - p["tool_length"]]))
+    tip = np.array([tip[0] - p["pivot_x"], tip[1], tip[2] - p["pivot_z"]])
+    place = np.einsum("ij...,j...->i...", table, tip)
+    return *place, tuple(map(tuple, np.einsum("ij...,jk...->ik...", table, carrier)))
+
+
+def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The part turns from X to Y: the tool, seen from it, the other way."""
+    return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
     "Kin_5Axes": _five_axes,
+    "Softkin_HeadHead_CA": _head_head_a,
     "Softkin_HeadHead_CB": _head_head,
+    "Softkin_HeadTable_AC": _head_table_a,
     "Softkin_HeadTable_BC": _head_table,
+    "Softkin_NutatingHead_CB": _nutating_head,
+    "Softkin_NutatingTable_BC": _nutating_table,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_TableTable_AC": _table_table,
+    "Softkin_TableTable_BC": _table_table_b,
+    "Softkin_Transmit": _face,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,

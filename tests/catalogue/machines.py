@@ -17,10 +17,9 @@ from derive.geometry.frames import Motion
 from tests.catalogue.closure import Array, Closure
 from tests.mechanisms import catalogue
 
-MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
-"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those of a platform in `hexapod`,
-orientation
-kinematics in `coupling`."""
+MECHANISMS = tuple(m for _, m in catalogue() if not (m.rods or m.drives or m.is_orientation or m.search))
+"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those with loops in a
+chain in `driven_machines.py`, those of a platform in `hexapod`, orientation kinematics in `coupling`."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
@@ -84,6 +83,12 @@ class Machine:
         branches.
         """
         return self.robot.BRANCHES > 0 and int((~self.closure.angles & self.solved).sum()) < len(self.closure.task)
+
+    @property
+    def lowest_direction(self) -> float:
+        """The least z of a direction of the tool: of an axis that is inclined to the pole, twice its angle away."""
+        nutation = self.robot.parameters.get("nutation")
+        return -1.0 if nutation is None else float(np.cos(2 * np.radians(nutation)))
 
     @property
     def solved(self) -> NDArray[np.bool_]:
@@ -206,7 +211,7 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
     nominal = {p.name: p.nominal for p in mechanism.parameters}
     lengths = [p.name for p in mechanism.parameters if p.role in LENGTHS]
     found = {
-        "plain": {name: nominal[name] for name in lengths},
+        "plain": {p.name: p.nominal for p in mechanism.parameters if p.role in LENGTHS or p.default is None},
         "nominal": nominal,
         "equal": nominal | {name: np.copysign(250.0, nominal[name]) for name in lengths},
         "unequal": nominal | {name: np.copysign(v, nominal[name]) for name, v in zip(lengths, UNEQUAL, strict=False)},
@@ -218,7 +223,8 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
 @cache
 def bare_machine(mechanism: Mechanism) -> Machine:
     """Equal links and nothing else: folded, its reach is zero, and every angle that can be free is."""
-    return machine(mechanism, "bare", {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
+    angles = {p.name: p.nominal for p in mechanism.parameters if p.role is Role.ANGLE}
+    return machine(mechanism, "bare", angles | {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
 
 
 def machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
@@ -246,7 +252,7 @@ def _draw(parameter: Parameter, rng: Generator) -> float:
     sizes = {Role.PITCH: 100.0, Role.GEAR: 0.3, Role.COUPLING: 1.5}
     if parameter.role is Role.SIGNED_LENGTH:
         return float(parameter.nominal * rng.uniform(0.4, 1.6) * rng.choice((-1, 1)))
-    if parameter.role in (Role.LENGTH, Role.DISTANCE):
+    if parameter.role in (Role.LENGTH, Role.DISTANCE, Role.ANGLE):
         return float(parameter.nominal * rng.uniform(0.4, 1.6))
     if parameter.role is Role.FLAG:
         return float(rng.integers(2))

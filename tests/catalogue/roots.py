@@ -24,9 +24,9 @@ def solutions(machine: Machine, position: Array, rotation: Array, held: Array) -
     """
     closure = machine.closure
     rng = np.random.default_rng(77)
-    scale = np.where(closure.angles, 1.0, machine.reach)
+    scale = np.where(closure.turning, 1.0, machine.reach)
     starts = MANY_STARTS if machine.robot.BRANCHES > 1 else STARTS
-    joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
+    joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.turning, np.pi, 2 * machine.reach)
     if machine.mechanism.is_platform and machine.robot.BRANCHES == 0:  # of many mirror images one is wanted
         where = np.tile(position, (starts, 1)), np.tile(machine.closure.reachable(rotation[None]), (starts, 1, 1))
         joints, _ = machine.closure.joints_at(*where, rng)
@@ -54,7 +54,7 @@ def ends_from(machine: Machine, joints: Array, position: Array, rotation: Array)
 def principal(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
     """The same solutions with angles in [-pi, pi); an axis that carries another one along moves it back with it."""
     wrapped = joints.copy()
-    angles = machine.closure.angles & machine.solved
+    angles = machine.closure.turning & machine.solved
     wrapped[:, angles] = (joints[:, angles] + np.pi) % (2 * np.pi) - np.pi
     return _newton(machine, wrapped, position, rotation, 3)
 
@@ -63,7 +63,7 @@ def distance(machine: Machine, first: Array, second: Array) -> Array:
     """The difference of joint values: angles on the circle, lengths per reach."""
     difference = first - second
     wrapped = (difference + np.pi) % (2 * np.pi) - np.pi
-    return np.where(machine.closure.angles, wrapped, difference / machine.reach)
+    return np.where(machine.closure.turning, wrapped, difference / machine.reach)
 
 
 def _newton(machine: Machine, joints: Array, position: Array, rotation: Array, steps: int) -> Array:

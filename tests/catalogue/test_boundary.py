@@ -129,7 +129,8 @@ def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None
                     assert machine.miss(found, *moved).max() < 1e-10
                 else:
                     assert (statuses == Status.UNREACHABLE).all(), size
-    assert bool(folds) == (machines[0].is_spatial and machines[0].has_a_reach)
+    has_an_edge = machines[0].has_a_reach or machines[0].lowest_direction > -1.0
+    assert bool(folds) == (machines[0].is_spatial and has_an_edge)
 
 
 def alone(machine: Machine, locus: Locus) -> Array:
@@ -184,7 +185,11 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tup
         robot = machine.open_robot
         _, statuses = robot.inverse_batch(positions, opposite, own, axes)
         turns = mechanism.task.turning is Turning.ABOUT_Z
-        if mechanism.task.turning is Turning.FULL:
+        if machine.lowest_direction > -1.0:
+            is_low = opposite[:, 2, 2] < machine.lowest_direction
+            assert (statuses == np.where(is_low, Status.UNREACHABLE, Status.OK)).all()
+            continue
+        if mechanism.task.turning in (Turning.FULL, Turning.PITCH):
             assert machine.answers(statuses).any()  # another pose as any
             continue
         assert (statuses == (Status.UNREACHABLE if turns else Status.OK)).all()

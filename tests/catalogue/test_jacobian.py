@@ -11,6 +11,7 @@ TURNS = {
     Turning.NONE: (),
     Turning.ABOUT_Z: ("turn z",),
     Turning.DIRECTION: ("tilt x", "tilt y"),
+    Turning.PITCH: ("pitch",),
     Turning.FULL: ("turn x", "turn y", "turn z"),
 }
 
@@ -91,6 +92,8 @@ def test_the_determinant_is_the_product_of_the_margins(machines: tuple[Machine, 
 
 def _is_type_2(machine: Machine, margin: str) -> bool:
     """Where it vanishes the determinant of a closed loop grows without bound."""
+    if machine.mechanism.drives:
+        return margin.startswith("lever_")
     assembly = machine.mechanism.assembly
     if machine.mechanism.is_platform:
         return margin == "rods_dependent"

@@ -2,6 +2,7 @@
 
 from math import inf, nan
 
+import numpy as np
 import pytest
 import softkin
 from softkin import KinematicsError, Status
@@ -49,20 +50,22 @@ def test_ranges(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
             machine.changed(**{parameter.name: parameter.low})
 
 
-def test_ranges_of_the_vendor() -> None:
-    """The numbers of the SF512x manual."""
-    limits = {"link_length_1": (1e-9, 800), "link_length_2": (1e-9, 800), "pitch_zc": (-200, 200)}
-    limits |= {"offset_a1": (-360, 360), "offset_a2": (-360, 360), "offset_a3": (-400, 400), "offset_a4": (-720, 720)}
-    lengths = {"link_length_1": 325.0, "link_length_2": 225.0}
-    for name, ends in limits.items():
-        for end, outward in zip(ends, (-1, 1), strict=True):
-            softkin.Scara4ZCcoupledType1(**{**lengths, name: end})
-            with pytest.raises(KinematicsError, match=name):
-                softkin.Scara4ZCcoupledType1(**{**lengths, name: end + outward * 1e-6})
-    for axis, end in (("a1", 360), ("a2", 360), ("a3", 400), ("a4", 720)):
-        softkin.Scara4ZCcoupledType1(**lengths, **{f"lower_{axis}": -end, f"upper_{axis}": end})
-        with pytest.raises(KinematicsError, match=f"upper_{axis}"):
-            softkin.Scara4ZCcoupledType1(**lengths, **{f"lower_{axis}": -end, f"upper_{axis}": end + 0.001})
+def test_ranges_of_the_vendor_are_no_refusals() -> None:
+    """The SF512x manual has links up to 800, pitches up to 200, axes up to 360, 400 and 720: more is possible."""
+    limits = {f"lower_{key}": -1000.0 for key in ("a1", "a2", "a3", "a4")}
+    limits |= {f"upper_{key}": 1000.0 for key in ("a1", "a2", "a3", "a4")}
+    robot = softkin.Scara4ZCcoupledType1(
+        link_length_1=900.0, link_length_2=1100.0, pitch_zc=250.0, offset_a1=400.0, offset_a3=-450.0, **limits
+    )
+    axes = (430.0, 65.0, -500.0, 725.0)
+    frame, configuration = robot.forward(axes)
+    np.testing.assert_allclose(robot.inverse(frame, configuration, reference=axes), axes, atol=1e-9)
+    turn, elbow = np.radians(30.0), np.radians(95.0)
+    x = 900.0 * np.cos(turn) + 1100.0 * np.cos(elbow)
+    assert frame.position[0] == pytest.approx(x) and frame.position[2] == pytest.approx(-50.0 - 250.0 * 725 / 360)
+    for wrong in ({"link_length_1": 0.0}, {"link_length_2": -1.0}, {"pitch_zc": nan}):
+        with pytest.raises(KinematicsError, match=next(iter(wrong))):
+            softkin.Scara4ZCcoupledType1(**{"link_length_1": 900.0, "link_length_2": 1100.0, **wrong})
 
 
 def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -90,7 +93,9 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         usual |= dict.fromkeys(("min_type2_margin", "warning_distance"), 1e-3)
         swing = 45.0 if parameter.name == "max_angle_ball_joint" else None  # as CODESYS has it
         by_role = {**dict.fromkeys(LENGTHS), Role.ANGLE: swing, Role.SIGN: 1.0}
-        if mechanism.is_platform and own is not None:  # what must be given, and what need not, is said one by one
+        if (
+            mechanism.is_platform or mechanism.drives
+        ) and own is not None:  # what must be given, and what need not, is said one by one
             by_role |= dict.fromkeys((Role.DISTANCE, Role.ANGLE), own.default)
         assert parameter.default == (usual.get(parameter.name, 0.0) if own is None else by_role.get(own.role, 0.0))
 

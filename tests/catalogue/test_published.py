@@ -14,6 +14,14 @@ LINUXCNC = (
     ((120.0, -75.0, 30.0), (6.776695296637, 471.225332583346), 75.0),
     ((10.0, -130.0, -400.0), (209.834636024151, -157.465970539353), -520.0),
 )
+TRUNNIONS = (
+    # joints X, Y, Z, tilt, C, then x, y, z of xyzac-trt-kins with y-offset -20, z-offset -30, tool-offset 75
+    ("A", (10.0, -20.0, 30.0, 35.0, 50.0), (-15.483788392, -26.046514022, 32.712719336)),
+    ("A", (-45.0, 60.0, 5.0, -70.0, 200.0), (26.912596333, -57.629447284, 106.49460393)),
+    # and of xyzbc-trt-kins with x-offset 25, z-offset -40, tool-offset 90
+    ("B", (10.0, -20.0, 30.0, 35.0, 50.0), (0.224446142, -31.381961033, 25.013312569)),
+    ("B", (-45.0, 60.0, 5.0, -70.0, 200.0), (18.22004219, -70.482219373, 100.387577005)),
+)
 SAMPLE = (-124.963889, -52.330798, 84.504469, -481.124887)
 SAMPLE_POSITION = (-431.717444, -279.263625, 99.566963)
 SIX_DIGITS = 1e-5
@@ -45,6 +53,25 @@ def test_three_axis_scara_of_linuxcnc() -> None:
             frame, _ = robot.forward((angles[0], angles[1], -3.0))
             assert frame.position == pytest.approx((*position, -3.0), abs=1e-11)
             assert np.allclose(frame.rotation, about_z(angles[0] + angles[1]), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(("tilt", "axes", "position"), TRUNNIONS)
+def test_trunnions_of_linuxcnc(tilt: str, axes: tuple[float, ...], position: tuple[float, ...]) -> None:
+    """Its offsets are pivots the other way round, and zeros of slides; its z is that of the tip with the tool added."""
+    if tilt == "A":
+        tool, robot = (
+            75.0,
+            softkin.TableTableAC(pivot_y=20.0, pivot_z=30.0, tool_length=75.0, offset_y=-20.0, offset_z=-30.0),
+        )
+    else:
+        tool, robot = (
+            90.0,
+            softkin.TableTableBC(pivot_x=-25.0, pivot_z=40.0, tool_length=90.0, offset_x=25.0, offset_z=-40.0),
+        )
+    tip = (*position[:2], position[2] - tool)
+    frame, configuration = robot.forward(axes)
+    assert frame.position == pytest.approx(tip, abs=1e-8)
+    assert robot.inverse((tip, frame.rotation), configuration, axes) == pytest.approx(axes, abs=1e-7)
 
 
 def sample() -> softkin.Mechanism:

@@ -36,7 +36,7 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
             counts.add(compare(machine, position, rotation, values))
     most = 2 ** machines[0].robot.BRANCHES
     assert min(counts) >= 1
-    assert max(counts) == most or machines[0].mechanism.rods
+    assert max(counts) == most or machines[0].mechanism.rods or machines[0].mechanism.drives
     assert counts == {most} or not machines[0].branches_meet_together
 
 
@@ -58,4 +58,6 @@ def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, 
         assert counts == ({0, most} if machines[0].has_a_reach else {most})
     else:
         assert 0 in counts
-        assert counts <= set(range(0, most + 1, 1 if machines[0].mechanism.rods else 2))
+        assert counts <= set(
+            range(0, most + 1, 2 if not (machines[0].mechanism.rods or machines[0].mechanism.drives) else 1)
+        )

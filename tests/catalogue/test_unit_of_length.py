@@ -57,7 +57,9 @@ def axes_of(mechanism: Mechanism, robot: softkin.Mechanism, scale: float) -> Arr
         return robot.inverse_batch(frames, np.tile(np.eye(3), (POSES, 1, 1)))[0]
     columns = []
     for joint in mechanism.joints:
-        low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-scale, scale))
+        low, high = joint.domain or ((-180.0, 180.0) if joint.axis_is_angle else (-scale, scale))
+        if joint.loops:
+            low, high = sorted((0.8 * joint.nominal, 1.2 * joint.nominal))
         columns.append(rng.uniform(low, min(high, 2.0 * scale), 4000))
     drawn = np.stack(columns, axis=1)
     drawn[::50] = np.round(drawn[::50] / 90.0) * 90.0
@@ -86,7 +88,7 @@ def test_only_lengths_change_with_the_unit(described: Mechanism, unit: float) ->
     assert (found[2] == configurations).all() and (found[3] == Status.OK).all()
     np.testing.assert_allclose(found[0], positions * unit, **close)
     np.testing.assert_allclose(found[1], rotations, **close)
-    rows = np.array([1.0 if r.startswith(("turn", "tilt")) else unit for r in robot.JACOBIAN_ROWS])
+    rows = np.array([unit if r in "xyz" else 1.0 for r in robot.JACOBIAN_ROWS])
     for row in axes:
         here, there = robot.singularity(row), other.singularity(row * slides)
         assert here.is_singular == there.is_singular

@@ -12,6 +12,7 @@ from tests.codesys.guide import GUIDE, PROGRAMS, closed
 from tests.codesys.parts import FILES, all_parts
 from tests.harness import ast
 from tests.harness.parse import parse
+from tests.text.units import FOLDER
 
 LENGTHS = {
     "Scara2Z": {"arm_length_1": 300.0, "arm_length_2": 250.0},
@@ -33,6 +34,19 @@ def test_every_program_of_the_guide_is_executed() -> None:
     """A new listing needs a test that runs it: these are the ones that have one."""
     heads = [program.split("\n")[0].split()[1] for program in PROGRAMS]
     assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Ask", "PRG_Cnc"]
+
+
+def test_the_objects_that_it_counts() -> None:
+    """What an import of the SCARA brings."""
+    text = (FOLDER / "scara" / "Softkin_Scara2_Z.xml").read_text(encoding="utf-8")
+    kinds = ("pou ", "dataType ", "globalVars ", "Interface ", "Method ")
+    pous, types, lists, interfaces, methods = (text.count(f"<{kind}") for kind in kinds)
+    assert (lists, interfaces) == (1, 1)
+    told = " ".join(GUIDE.split())
+    assert (
+        f"{pous + types + 2} objects ({pous} POUs, {types} types, a list, an interface) with {methods} methods" in told
+    )
+    assert f"the same {pous + types + 2} objects and {methods} methods" in told
 
 
 def test_every_choice_it_names_exists() -> None:

@@ -47,14 +47,22 @@ _HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
 
 DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
+    "Softkin_HeadHead_CA": {"fork_offset": 20.0, "head_offset": 12.0, "pivot_length": 250.0},
     "Softkin_HeadHead_CB": {"fork_offset": 25.0, "head_offset": -15.0, "pivot_length": 260.0},
+    "Softkin_HeadTable_AC": {"head_offset": -25.0, "pivot_length": 220.0},
     "Softkin_HeadTable_BC": {"head_offset": 35.0, "pivot_length": 240.0},
+    "Softkin_NutatingHead_CB": {
+        "fork_offset": 5.0, "head_offset": -10.0, "pivot_length": 280.0, "nutation": 45.0,
+    },
+    "Softkin_NutatingTable_BC": {"pivot_x": 8.0, "pivot_z": 30.0, "tool_length": 110.0, "nutation": 50.0},
     "Softkin_Palletizer": {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
     },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
+    "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
+    "Softkin_Transmit": {},
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
     },

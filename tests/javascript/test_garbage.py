@@ -83,7 +83,7 @@ def _numbers(value: Any) -> list[float]:
     [
         None, "text", [], 4.0, {"link_length_1": 300.0}, {"link_length_1": 300.0, "link_length_2": NAN},
         {"link_length_1": 300.0, "link_length_2": "250"}, {"link_length_1": 300.0, "link_length_2": 0.0},
-        {"link_length_1": 300.0, "link_length_2": 801.0}, {"link_length_1": 300.0, "link_length_2": -1.0},
+        {"link_length_1": 300.0, "link_length_2": 2e9}, {"link_length_1": 300.0, "link_length_2": -1.0},
         {"link_length_1": 300.0, "link_length_2": 250.0, "link_length_3": 1.0},
         {"link_length_1": 300.0, "link_length_2": 250.0, "check_limits": 2.0},
         {"link_length_1": 300.0, "link_length_2": 250.0, "lower_a1": 10.0, "upper_a1": -10.0},

@@ -13,7 +13,7 @@ from tests.javascript.modules import module_of
 from tests.javascript.node import ask
 
 WRONG: list[Any] = [
-    {"A9": [0.0, 1.0]}, {"A1": [1.0, 0.0]}, {"A1": [0.0]}, {"A1": "ab"}, {"A1": 3.0}, {"A1": [-1000.0, 0.0]}, 5.0,
+    {"A9": [0.0, 1.0]}, {"A1": [1.0, 0.0]}, {"A1": [0.0]}, {"A1": "ab"}, {"A1": 3.0}, {"A1": [-2e9, 0.0]}, 5.0,
 ]  # fmt: skip
 
 

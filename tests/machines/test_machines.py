@@ -179,7 +179,7 @@ def test_parallel_slides_are_refused_when_the_machine_is_set_up(name: str, lean:
     assert len(PARAMETERS_DECIDE) == 2
     robot = type(machine.robot)
     assert isinstance(robot(lean=45.0), softkin.Mechanism)
-    assert refusal(robot, lean=lean, says=r"must not vanish: slides would be parallel") is Status.NOT_INITIALIZED
+    assert refusal(robot, lean=lean, says=r"must not be 0: parallel slides") is Status.NOT_INITIALIZED
     controller = machine.controller()
     assert controller.initialise({**machine.robot.parameters, "lean": lean}) != OK
 

@@ -145,9 +145,9 @@ WRONG = {
     ),
     "CartesianToAxes: a limit": Break(_LIMITS, "(values[index] <= axes", "(values[index] <= 2.0*axes"),
     "CartesianToAxes: an output before a refusal": Break(
-        "METHOD PUBLIC CartesianToAxes",
-        "IF status = Softkin_Names.NoError THEN",
-        "IF status <> Softkin_Names.NotInitialized THEN",
+        _INVERSE,
+        "IF status = Softkin_Names.NoError THEN\n  a := solution;",
+        "IF status <> Softkin_Names.NotInitialized THEN\n  a := solution;",
     ),
     "CartesianToAxes: a turn": Break(_INVERSE, "number, number - 1)", "number, number)"),
     "CartesianToAxes: byte 3": Break(_INVERSE, "(number = 3)", "(number = 7)"),

@@ -5,19 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from derive.description.mechanism import Mechanism
+from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
 from tests.text import comparisons
 from tests.text.comparisons import Comparison
 from tests.text.loops import answers
 from tests.text.loops.machines import LOOPS, Loop, loops_of
-from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 
 Pair = SerialPair | Loop
-POSITION_KINEMATICS = (*MECHANISMS, *LOOPS)
-"""Serial mechanisms and those with rods. Orientation kinematics have methods, and a folder, of their own."""
+POSITION_KINEMATICS = (*MECHANISMS, *DRIVEN, *LOOPS)
+"""Serial mechanisms, with loops in their chains or without, and those with rods. Orientation kinematics have methods,
+and a folder, of their own."""
 
 
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
     """Its machines."""
+    if mechanism.drives:
+        return tuple(map(serial_pair, driven_machines_of(mechanism)))
     return loops_of(mechanism) if mechanism.rods else serial_pairs_of(mechanism)
 
 

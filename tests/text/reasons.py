@@ -60,6 +60,8 @@ def _commands(one: Any, sample: Sample) -> Iterator[Command]:
     mirrored = np.array(rotation) @ np.diag([1.0, 1.0, -1.0])
     yield Command(position, tuple(map(tuple, mirrored.tolist())), own, near)
     yield Command(position, HALF_TURN, own, near)
+    above = (*position[:2], position[2] + 1.0)  # a planar machine refuses it in all branches together
+    yield Command(above, rotation, (0,) * len(own), near)
 
 
 def _changed(values: tuple[float, ...], place: int) -> tuple[float, ...]:

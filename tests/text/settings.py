@@ -71,7 +71,7 @@ def poses(mechanism: Mechanism, count: int = 3) -> tuple[tuple[float, ...], ...]
     rng = np.random.default_rng(17)
     columns = []
     for joint in mechanism.joints:
-        low, high = (-150.0, 150.0) if joint.is_angle else (joint.nominal + 20.0, joint.nominal + 90.0)
+        low, high = (-150.0, 150.0) if joint.axis_is_angle else (joint.nominal + 20.0, joint.nominal + 90.0)
         if joint.domain is not None:
             low, high = max(low, joint.domain[0] + 1.0), min(high, joint.domain[1] - 1.0)
         columns.append(rng.uniform(low, high, DRAWN))

@@ -134,7 +134,7 @@ def test_the_order_of_the_calls_does_not_matter(mechanism: Mechanism) -> None:
     """Before Initialize, after it, repeated, through several: the last settings count, and all that is kept is the
     same.
     """
-    last = [(-100.0 - k, 170.0 + k) if j.is_angle else (-900.0, 900.0 + k) for k, j in enumerate(mechanism.joints)]
+    last = [(-100.0 - k, 170.0 + k) if j.axis_is_angle else (-900.0, 900.0 + k) for k, j in enumerate(mechanism.joints)]
     first: list[Range] = [(-5.0, 5.0), None, (-1e6, 1e6)]
     robot = robot_of(mechanism)
     wanted = heard(started(robot, mechanism, last))

@@ -89,3 +89,23 @@ def misbehaving(name: str) -> Library:
 def test_no_order_where_the_library_behaves_otherwise(name: str) -> None:
     """A library whose functions behave differently has an unknown order."""
     assert misbehaving(name).function("Softkin_FindMatrixOrder")() == "Unknown"
+
+
+def test_the_body_for_nine_fields_is_right() -> None:
+    """The statements that stand in a comment read and write a matrix whose elements have names."""
+    places = [(row, column) for row in (1, 2, 3) for column in (1, 2, 3)]
+    fields = "".join(f"  field{row}{column} : LREAL;\n" for row, column in places)
+    texts = {"Nine.st": f"TYPE Nine :\nSTRUCT\n{fields}END_STRUCT\nEND_TYPE\n"}
+    for name in ("Softkin_ReadMatrix", "Softkin_WriteMatrix"):
+        head, _, body = shared_texts()[f"{name}.st"].replace("SM3M.SMC_Matrix3", "Nine").partition(f"{name} := FALSE;")
+        _, other = body.split("to field33.\n")
+        declaration = head.replace("  copy : Nine;\n  view : POINTER TO ARRAY[0..8] OF LREAL;\n", "  unused : BOOL;\n")
+        texts[f"{name}.st"] = declaration + other.replace("// Softkin", "Softkin").replace("// a", "a").replace(
+            "// m", "m"
+        )
+    made = compile_st({**texts, "Softkin_MatrixOrder.st": shared_texts()["Softkin_MatrixOrder.st"]})
+    written = made.new("Nine")
+    assert made.function("Softkin_WriteMatrix")(m=written, aElements=NUMBERS, eOrder="Rows")
+    assert [getattr(written, f"field{row}{column}") for row, column in places] == NUMBERS
+    found = [0.0] * 9
+    assert made.function("Softkin_ReadMatrix")(m=written, aElements=found, eOrder="Rows") and found == NUMBERS

@@ -34,7 +34,7 @@ def test_a_refusal_is_told(seen: Seen) -> None:
 def test_dimensions_are_edited(seen: Seen) -> None:
     """A length of 0 is refused in a sentence, and leaves the machine as it was; another one changes it."""
     assert len(seen["dimension"]) == 1
-    assert "must be more than 0 and at most 800" in seen["dimension"][0]
+    assert "must be more than 0 and at most 1000000000" in seen["dimension"][0]
     assert seen["afterWrong"]["parameters"]["link_length_1"] == 325
     assert seen["longer"]["parameters"]["link_length_1"] == 300
     confirm(seen["longer"])

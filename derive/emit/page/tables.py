@@ -97,7 +97,7 @@ def operations(kinematics: Kinematics) -> Iterator[Cells]:
     more: Sequence[tuple[str, Cost]] = (
         ("In addition: check of an exact frame", costs.exact),
         ("In addition: repair of a frame", costs.repair),
-        ("In addition: a branch at a singular pose", costs.corners),
+        (f"In addition: {costs.corner}", costs.corners),
     )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     for what, cost in rows:

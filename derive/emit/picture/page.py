@@ -73,6 +73,12 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
     hidden = ", ".join(spelled(label, names) for label in drawing.scene.hidden)
     if hidden:
         yield f"Zero here: {hidden}."
+    loops = [
+        f"{spelled(joint, names)} by {', '.join(spelled(length, names) for length in lengths)}"
+        for joint, lengths in drawing.scene.loops
+    ]
+    if loops:
+        yield from wrap(f"Loops move joints, with lengths that are not drawn: {'; '.join(loops)}.", _LETTERS)
     for k, choice in enumerate(drawing.choices):
         if choice in shown and choice.assemblies is not None:
             pairs = zip((1, 2), choice.names, choice.assemblies, strict=True)

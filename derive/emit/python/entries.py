@@ -125,7 +125,7 @@ def costs(kin: Kinematics) -> list[str]:
     rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
     if kin.branches:
         rows.append(f"inverse, all {2 ** len(kin.branches)} branches: {_operations(found.automatic)}")
-    more = {"repair of a frame, in addition": found.repair, "a branch at a singular pose, in addition": found.corners}
+    more = {"repair of a frame, in addition": found.repair, f"{found.corner}, in addition": found.corners}
     rows += [f"{what}: {_operations(cost)}" for what, cost in more.items() if any(cost.counts)]
     return [*rows, *(f"{b.note}: at most {b.limit} passes, all of which are counted" for b in found.bounds)]
 
@@ -178,9 +178,11 @@ def example(kin: Kinematics) -> list[str]:
 
 def chain(kin: Kinematics) -> list[str]:
     """The factors of a serial chain as it is described, each with the part of its amount that no axis moves, and what
-    each motor adds per unit. Empty for a loop, and where an amount is not linear in the motors.
+    each motor adds per unit. Empty for a loop, where loops move joints, and where an amount is not linear in motors.
     """
     described, joints = kin.mechanism.drawn or kin.mechanism.chain, kin.mechanism.joints
+    if any(j.loops for j in joints):
+        return []
     known = {j.symbol: sp.expand(j.ratio * j.motor + j.coupling) for j in joints} | {sp.pi: 180 * DEGREE}
     amounts = [] if described is None else [sp.expand(f.amount.xreplace(known)) for f in described.factors]
     moved = [[sp.diff(amount, j.motor) for j in joints] for amount in amounts]
@@ -235,8 +237,8 @@ OF_CLASS = frozenset(
     checks_limits condition configuration configuration_offset deviations diagnose forward forward_batch from_dict
     from_json image_on in_degrees in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset
     is_compatible jacobian jacobian_batch limits line manipulability names nearest nearest_batch orientation
-    orientation_image parameters path project singularity singularity_batch to_dict to_json twist with_base
-    with_tool
+    orientation_image parameters path project singularity singularity_batch tilted_plane to_dict to_json twist
+    with_base with_tool
     """.split()
 )
 """The attributes of a class besides its parameters."""

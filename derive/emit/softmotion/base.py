@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from jinja2 import Environment
 
-from derive.emit.st.contract import Contract, Parameter, Signature
+from derive.emit.st.contract import Contract, Signature
 from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.rotation import about_z, followed
 
@@ -55,9 +55,6 @@ BASE_VARIABLES = (
     "home",
 )
 """The instance variables of the base block."""
-PRIVATE = ("FindAxes", "Configure")
-"""The private methods of the base block: the common part of CartesianToAxes, its offset variant and Diagnose, and the
-one that writes a configuration."""
 
 
 @dataclass(frozen=True)
@@ -70,10 +67,7 @@ class Method:
 
 def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
     """The statements of the methods that a geometry need not override, if those of the base block are right for it."""
-    plain = (
-        _method(contract.overridable[name], name, contract, templates, is_guarded=False)
-        for name in ("FindImage", "FindMargins")
-    )
+    plain = (_method(contract.overridable[name], name, contract, templates) for name in ("FindImage", "FindMargins"))
     signature = contract.overridable["FindProjection"]
     projections = (
         templates.get_template("methods/FindProjection.st.j2").render(contract.spelling, program=program)
@@ -103,61 +97,21 @@ def _signatures(contract: Contract) -> Iterator[Signature]:
             yield contract.signatures[name]
     for name in _OWN:
         yield contract.own[name]
-    yield _find_axes(contract)
-    yield _configure(contract)
+    yield from contract.private.values()
     yield from contract.offered.values()
     yield from contract.overridable.values()
     yield from contract.supplied.values()
-
-
-def _find_axes(contract: Contract) -> Signature:
-    """The signature of the private method: a frame in its parts, the point of the offset, and whether it is given."""
-    types = contract.spelling["types"]
-    constant = {
-        "v": types["vector"],
-        "m": types["matrix"],
-        "vOffset": types["vector"],
-        "aRef": types["axes"],
-        "cd": types["configuration"],
-    }
-    outputs = {"iReason": "INT", "dMissing": "LREAL", "iTurn": "INT"}
-    return Signature(
-        PRIVATE[0],
-        types["error"],
-        (
-            Parameter("VAR_IN_OUT", "a", types["axes"]),
-            *(Parameter("VAR_IN_OUT CONSTANT", name, kind) for name, kind in constant.items()),
-            Parameter("VAR_INPUT", "xOffset", "BOOL"),
-            *(Parameter("VAR_OUTPUT", name, kind) for name, kind in outputs.items()),
-        ),
-        "PRIVATE",
-    )
-
-
-def _configure(contract: Contract) -> Signature:
-    """The signature of the private method: numbers with the signs of the branches, and the axis values."""
-    types = contract.spelling["types"]
-    parameters = (
-        Parameter("VAR_IN_OUT", "cd", types["configuration"]),
-        Parameter("VAR_IN_OUT CONSTANT", "aBranches", "ARRAY[0..7] OF LREAL"),
-        Parameter("VAR_IN_OUT CONSTANT", "a", types["axes"]),
-    )
-    return Signature(PRIVATE[1], "", parameters, "PRIVATE")
 
 
 def _template(signature: Signature, contract: Contract) -> str:
     return "Supplied" if signature.name in contract.supplied else signature.name.removesuffix("From")
 
 
-def _method(
-    signature: Signature, template: str, contract: Contract, templates: Environment, *, is_guarded: bool = True
-) -> Method:
-    """A method of the base block. is_guarded: whether before Initialize it only returns an error."""
+def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,
         returns=signature.returns,
-        is_guarded=is_guarded,
         projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )
     return Method(signature.head(), with_gathered(tidy(text)))

@@ -85,7 +85,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
         parameters=_lines(f"{_refused(kinematics)}The parameters are read by Initialize alone."),
-        configuration=list(_configuration(block)),
+        configuration=list(_configuration(kinematics, block)),
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
@@ -112,12 +112,19 @@ def _refused(kinematics: Kinematics) -> str:
     return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
 
 
-def _configuration(block: Block) -> Iterator[str]:
+def _configuration(kinematics: Kinematics, block: Block) -> Iterator[str]:
     if not block.configuration_size:
         yield "None: every pose has one solution."
         return
-    for branch in block.branches:
-        yield from _item(f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}.")
+    search = kinematics.mechanism.search
+    for branch, described in zip(block.branches, kinematics.branches, strict=True):
+        text = f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}."
+        if described.is_crossing and search is not None:
+            text += (
+                f" It tells solutions apart whose other bytes are equal: what the search along {search.joint.name} "
+                "brings to zero rises or falls there. Leave it automatic unless you need one of them."
+            )
+        yield from _item(text)
     for turns in (_PERIOD, _GEARED):
         periods = [p for p in block.periods if bool(p.turns) == (turns is _GEARED)]
         if len(periods) == 1:
@@ -168,11 +175,15 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
         f"residual {found.closure_residual:.0e}"
     )
     if (inverted := found.inverted) is not None:
+        found_by = "found by multi-start root finding, and"
         text += (
             f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
-            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, and "
-            "each of them is a solution of these formulas"
+            f"{inverted.jacobian:.0e}; "
         )
+        if inverted.solutions == 1:
+            text += f"1 solution was {found_by} it is a solution of these formulas"
+        else:
+            text += f"{inverted.solutions} solutions were {found_by} each of them is a solution of these formulas"
     yield from _lines(f"{text}. {found.exact.sentence} The block was not run on a controller.")
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
@@ -214,7 +225,7 @@ def _costs(costs: Costs, block: Block) -> Iterator[str]:
     more = (
         ("In addition: check of an exact frame", costs.exact),
         ("In addition: repair of a frame", costs.repair),
-        ("In addition: a branch at a singular pose", costs.corners),
+        (f"In addition: {costs.corner}", costs.corners),
     )
     rows += [(what, cost) for what, cost in more if any(cost.counts)]
     yield from _table(_COST_HEAD, map(_cost_row, rows))

@@ -73,8 +73,11 @@ def _value(parameter: Parameter) -> tuple[str, str]:
 
 
 def _range(parameter: Parameter) -> str:
-    """A range as SoftMotion writes half-open intervals; an end that is the largest allowed input is infinite."""
+    """The usual range, or else the allowed one, as SoftMotion writes half-open intervals; an end that is the largest
+    allowed input is infinite.
+    """
     largest = float(LARGEST)
-    left, low = ("]", "-inf") if parameter.low <= -largest else ("[", f"{parameter.low:g}")
-    right, high = ("[", "+inf") if parameter.high >= largest else ("]", f"{parameter.high:g}")
+    least, most = parameter.shown
+    left, low = ("]", "-inf") if least <= -largest else ("[", f"{least:g}")
+    right, high = ("[", "+inf") if most >= largest else ("]", f"{most:g}")
     return f"{']' if parameter.low_open else left}{low} .. {high}{right}"

@@ -10,7 +10,7 @@ from jinja2 import Environment
 
 from derive.description.mechanism import Parameter as Dimension
 from derive.description.mechanism import Role
-from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, PRIVATE, Method, inherited_texts, statements_of
+from derive.emit.softmotion.base import BASE_VARIABLES, INHERITED, Method, inherited_texts, statements_of
 from derive.emit.softmotion.block import Block, constants, direct, setup_of, start_in, stored_as
 from derive.emit.softmotion.calls import branch_of, commanded, from_home, offset_branch_of, without_axes
 from derive.emit.softmotion.inputs import inputs
@@ -188,7 +188,7 @@ def _method(
 def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
     signature = source.signature
     taken = {i.name for i in block.inputs} | {name for name, _ in block.fields} | {p.name for p in signature.parameters}
-    taken |= {"NumAxes", *BASE_VARIABLES, *PRIVATE, *contract.signatures}
+    taken |= {"NumAxes", *BASE_VARIABLES, *contract.private, *contract.signatures}
     taken |= {method_name(inner) for inner in kinematics.shared}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     refusal = Refusal(signature, errors, error)

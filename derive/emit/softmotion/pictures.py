@@ -42,7 +42,7 @@ def _tools(kinematics: Kinematics) -> str:
     """The offsets that SMC_GroupSetTool accepts: to subtract one, SoftMotion must know the flange's orientation."""
     if kinematics.mechanism.is_orientation:
         return "with a position block"
-    if kinematics.mechanism.task.turning is Turning.DIRECTION or kinematics.mechanism.followed_turns:
+    if kinematics.mechanism.task.turning is Turning.DIRECTION:
         return "along the axis it turns about"
     if kinematics.projection is not None or kinematics.freedom is Freedom.ZERO:
         return "any"

@@ -88,13 +88,15 @@ class Contract:
     supplied_for: Mapping[str, frozenset[str]]
     """The supplied methods that only a block with one of certain public methods needs, each with these."""
     supplied_turning: frozenset[str]
-    """The supplied methods that only a block with a turning flange needs."""
+    """The supplied and overridable methods that only a block with a turning flange needs."""
     overridable: Mapping[str, Signature]
     """The protected methods of the base block that a geometry overrides where they are not right for it."""
     overridable_for: Mapping[str, frozenset[str]]
     """The overridable methods that only a block with one of certain public methods may override, each with these."""
     offered: Mapping[str, Signature]
     """The protected methods of the base block that those of a geometry call."""
+    private: Mapping[str, Signature]
+    """The private methods of the base block."""
     is_flat: bool
     """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
@@ -161,10 +163,11 @@ def _loaded(profile: str | None, text: str) -> Contract:
         _signatures(data.pop("own")),
         _signatures(supplied, "PROTECTED"),
         _needing(supplied),
-        frozenset(key for key, table in supplied.items() if "turning" in table),
+        frozenset(key for key, table in (supplied | overridable).items() if "turning" in table),
         _signatures(overridable, "PROTECTED"),
         _needing(overridable),
         _signatures(data.pop("offered"), "PROTECTED"),
+        _signatures(data.pop("private"), "PRIVATE"),
         any(one.get("flat", False) for one in chosen),
         omits,
         names,
@@ -192,7 +195,9 @@ def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:
             entry["name"],
             kind,
             entry["value"] if kind == "BOOL" else f"{kind}.{entry['value']}",
-            entry["meaning"] + ("" if entry.get("documented", True) else "; not documented"),
+            entry["meaning"]
+            + ("" if entry.get("documented", True) else "; not documented")
+            + (f": if missing, {entry['instead']}" if "instead" in entry else ""),
         )
         for key, entry in entries.items()
     }

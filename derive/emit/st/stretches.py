@@ -21,6 +21,8 @@ from derive.report.branch_stretches import Stretch, stretches_of
 
 KNOWN, KEPT, SIDE = "shared.known", "shared.kept", "side"
 """The values that a caller keeps for all branches, and a number that says which signs of a stretch are positive."""
+IS_SHARED = "choice.isShared"
+"""Whether the caller solves several branches: one alone keeps no values for others."""
 SOLVED, REFUSED = 1, 2
 """The state of a stretch; 0 before it was computed."""
 Body = Callable[[Sequence[Item], int], Iterator[str]]
@@ -70,11 +72,15 @@ def _shared(
         yield f"IF {known} <> {SOLVED} THEN"
     for line in body(stretch.items, WIDTH - INSIDE):
         if line.strip() == "RETURN;":
-            yield from indented([line.replace("RETURN;", f"{known} := {REFUSED};")])
+            indent = line[: -len("RETURN;")]
+            yield from indented([f"{indent}{one}" for one in _if_shared([f"{known} := {REFUSED};"])])
         yield from indented([line])
-    yield from indented([_stored(kept, name, printer) for kept, name in places])
-    yield from indented([f"{known} := {SOLVED};"])
+    yield from indented(_if_shared([*(_stored(kept, name, printer) for kept, name in places), f"{known} := {SOLVED};"]))
     yield "END_IF"
+
+
+def _if_shared(lines: Sequence[str]) -> list[str]:
+    return [f"IF {IS_SHARED} THEN", *indented(lines), "END_IF"]
 
 
 def _stored(place: str, name: sp.Symbol, printer: StructuredText) -> str:

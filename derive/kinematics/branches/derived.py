@@ -125,7 +125,7 @@ def _word(mechanism: Mechanism, step: StepDeterminant, indicator: sp.Expr) -> st
 
 def _meanings(mechanism: Mechanism, indicator: sp.Expr) -> tuple[str, str]:
     """The meanings of the positive and the negative sign of an indicator."""
-    joints = {j.symbol: j.name for j in mechanism.joints}
+    joints = {j.symbol: j.moved_name for j in mechanism.joints}
     if indicator in joints:
         return f"{joints[indicator]} is positive", f"{joints[indicator]} is negative"
     if not isinstance(indicator, sp.sin | sp.cos):
@@ -141,7 +141,7 @@ def in_words(mechanism: Mechanism, value: sp.Expr) -> str:
     """An expression in the names of the description."""
     own = {j.name for j in mechanism.joints}
     names = {s: sp.Symbol(s.name.upper()) for s in POSITION if s.name.upper() not in own}
-    names |= {j.symbol: sp.Symbol(j.name) for j in mechanism.joints}
+    names |= {j.symbol: sp.Symbol(j.moved_name) for j in mechanism.joints}
     angles = {
         DEGREE * p.symbol: sp.Symbol(f"radians({p.given_name})") for p in mechanism.parameters if p.role is Role.ANGLE
     }

@@ -12,12 +12,12 @@ leads to the same branch, the joint of its two roots is mirrored about the start
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Turning
-from derive.equations.chain_splits import is_spatial
+from derive.geometry.frames import Motion
 from derive.ir.constants import (
     BOUNDARY,
     CONVERGED,
@@ -34,15 +34,16 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
 from derive.ir.program import Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
 from derive.ir.symbols import COORDINATE_NAMES, OFFSET, ROTATION_ENTRIES, SCALE, called, count, flag, real
-from derive.kinematics.branches.assignment import Assignment, margin_lets
-from derive.kinematics.differential import jacobian_entries, jacobian_rows
-from derive.kinematics.inverse import Inverse
+from derive.kinematics.branches.assignment import margin_lets
+from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.lost_digits.machine import Machine
 from derive.kinematics.lost_digits.starts import (
     AGAIN,
     ANOTHER,
     ATTEMPT,
     BEFORE,
     BESIDE,
+    BEYOND,
     ENDS,
     FREE_TURN,
     GOAL,
@@ -51,6 +52,7 @@ from derive.kinematics.lost_digits.starts import (
     LEFT_NOW,
     LEFT_OVER,
     MIRRORS,
+    MOVES,
     NEAREST,
     NEAREST_NOW,
     NEAREST_TURN,
@@ -66,41 +68,15 @@ from derive.kinematics.lost_digits.starts import (
     tried,
 )
 
-MET = flag("met")
-_ROTATED = (Turning.NONE, Turning.ABOUT_Z, Turning.DIRECTION, Turning.FULL)
-"""The commanded rotations whose error is known."""
+MET, SHARE = flag("met"), real("share_of_damping")
+OF_TURNS = ("open_", "reference_", "ref_motor_")
+"""How the names begin that the choice of a turn reads."""
+_NO_NEARER = flag("came_no_nearer")
 _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
-_FIRST = sp.Integer(9)
+EXACT = BOUNDARY / 10
+"""An error of a machine with deviations is rounding up to this: every pose of it is met by steps."""
+FIRST = sp.Integer(9)
 """Larger than every error: the error before the first step."""
-
-
-@dataclass(frozen=True)
-class Machine:
-    """What the steps need: the solved inverse, and its derivation and the pose at given axis values."""
-
-    mechanism: Mechanism
-    inverse: Inverse
-    assignments: tuple[Assignment, ...]
-    at_axes: tuple[Statement, ...]
-    is_point: bool = False
-    """Whether a point off the flange is commanded."""
-
-    @property
-    def turning(self) -> Turning:
-        """The commanded part of the rotation."""
-        return Turning.NONE if self.is_point else self.mechanism.task.turning
-
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """The rows of the Jacobian that the closure has."""
-        return tuple(self.mechanism.task.position) if self.is_point else jacobian_rows(self.mechanism)
-
-    @property
-    def has_steps(self) -> bool:
-        """Whether there are steps on its closure: it must be that of a chain."""
-        chain = self.mechanism.chain
-        is_known = chain is not None and (is_spatial(chain) or not self.is_point)
-        return is_known and self.turning in _ROTATED
 
 
 def varying(machine: Machine, branch: Program) -> set[sp.Symbol]:
@@ -123,9 +99,9 @@ def started(joint: Joint) -> sp.Symbol:
 def meet_program(machine: Machine, branch: Program) -> Program:
     """The program that meets a pose, and tells whether it has."""
     joints = machine.mechanism.joints
-    chosen = [Let(real(f"chosen_{j.key}"), _on_its_turn(j, branch)) for j in joints]
+    chosen = [Let(real(f"chosen_{j.key}"), on_its_turn(machine, j, branch)) for j in joints]
     near = {real(f"near_{j.key}") for j in joints}
-    needed = [s for s in branch.lets() if s.name in near or s.name.name.startswith(("open_", "reference_"))]
+    needed = [s for s in branch.lets() if s.name in near or s.name.name.startswith(OF_TURNS)]
     outputs = [Output(MET.name, IS_MET)]
     outputs += [Output(f"found_{j.key}", let.name) for j, let in zip(joints, chosen, strict=True)]
     names = {name: given_name(name) for name in varying(machine, branch)}
@@ -139,43 +115,82 @@ def meet_program(machine: Machine, branch: Program) -> Program:
 def _loop(machine: Machine, branch: Program) -> Iterate:
     """The steps from one start after the other."""
     joints = machine.mechanism.joints
-    closed, starts = closed_form(machine.mechanism, branch)
-    following = count("next_attempt")
-    attempt = (*next_attempt(following), *closed, ending(closed))
-    step = (*_at_axes(machine), *_error(machine), *_sides(machine), *_step(machine), *attempt)
+    closed, starts = closed_form(machine.mechanism, branch, machine.deviates is not None)
+    following, moves = count("next_attempt"), 0 if machine.deviates is None else MOVES
+    states = () if machine.deviates is None else (SHARE,)
+    moved = () if machine.deviates is None else (sp.Gt(following, 0),)
+    near = (j for j in joints if machine.deviates is not None and j.reference in branch.inputs)
+    at_reference = {j: Select(sp.Eq(following, 0), j.reference, starts[j]) for j in near}
+    attempt = (*next_attempt(following, machine.deviates is not None), *closed, ending(closed, *moved))
+    step = (*at_step(machine), *error_at_step(machine), *_sides(machine), *_step(machine), *attempt)
     return Iterate(
-        state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE),
-        start=(*map(started, joints), sp.Integer(PASSES), _ZERO, _FIRST, _FIRST, _ZERO, _ZERO, STEP),
+        state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE, *states),
+        start=(
+            *map(started, joints),
+            sp.Integer(PASSES),
+            sp.Integer(-moves),
+            FIRST,
+            FIRST,
+            _ZERO,
+            _ZERO,
+            STEP,
+            *(SHARE_OF_DAMPING for _ in states),
+        ),
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
-            *(_next(machine, j, starts[j]) for j in joints),
+            *(_next(machine, j, at_reference.get(j, starts[j])) for j in joints),
             Select(ANOTHER, Select(is_scan(following), _ZERO, sp.Integer(PASSES)), LEFT_NOW),
             Select(ENDS, sp.Integer(SCAN_ENDS + 1), following),
-            Select(sp.Or(ANOTHER, MIRRORS), _FIRST, real("error")),
+            Select(sp.Or(ANOTHER, MIRRORS), FIRST, real("error")),
             NEAREST_NOW,
             NEAREST_TURN_NOW,
             FREE_TURN,
             Select(refines(following), -BESIDE / Select(sp.Gt(BESIDE, 0), _ONE, sp.Integer(2)), BESIDE),
+            *(_next_share() for _ in states),
         ),
         done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, SCAN_ENDS)), ENDS),
-        limit=3 * (PASSES + 1) + SCANNED + REFINED,
+        limit=(3 + moves) * (PASSES + 1) + SCANNED + REFINED,
         otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )
 
 
-def _on_its_turn(joint: Joint, branch: Program) -> sp.Expr:
+def _next_share() -> sp.Expr:
+    """More damping behind a step that came no nearer, less behind another one."""
+    more, less = SHARE * 10, SHARE / 10
+    changed = Select(_NO_NEARER, Select(sp.Gt(more, _ONE), _ONE, more), larger(less, SHARE_OF_DAMPING))
+    return Select(sp.Or(ANOTHER, MIRRORS), SHARE_OF_DAMPING, changed)
+
+
+def on_its_turn(machine: Machine, joint: Joint, branch: Program) -> sp.Expr:
     """The axis value on the turn that the branch would choose."""
-    near = real(f"near_{joint.key}")
-    if joint.is_geared or not any(let.name == near for let in branch.lets()):
-        return tried(joint)
-    return NearestPeriod(tried(joint), near)
+    near, told = real(f"near_{joint.key}"), machine.commanded.get(joint)
+    value = tried(joint) if told is None else told.value(tried(joint))
+    lets = {let.name: let.value for let in branch.lets()}
+    if joint.is_geared or near not in lets:
+        return value
+    if told is None:
+        return NearestPeriod(value, near)
+    if _moves_others(machine.mechanism, joint):
+        return value  # they were found for the turn of the start
+    start = real(f"open_{joint.key}")
+    at_reference = {joint.reference: told.value(joint.reference)}
+    own = lets[near].xreplace({start: lets[start].xreplace(at_reference)}) if start in lets else near
+    return NearestPeriod(told.gain * value, told.gain * own) / told.gain
 
 
-def _at_axes(machine: Machine) -> list[Statement]:
+def _moves_others(mechanism: Mechanism, joint: Joint) -> bool:
+    """Whether a whole turn of an axis moves another joint, or shifts the chain."""
+    assert mechanism.chain is not None
+    shifts = (f.amount for f in mechanism.chain.factors if f.motion is Motion.SHIFT)
+    gears = (j.coupling for j in mechanism.joints if j is not joint)
+    return any({joint.motor, joint.symbol} & value.free_symbols for value in (*shifts, *gears))
+
+
+def at_step(machine: Machine) -> list[Statement]:
     """The pose, the margins of the branches and the Jacobian at the axis values of a step."""
     mechanism = machine.mechanism
-    lets, entries = jacobian_entries(mechanism)  # x, y and z are the position of the point, where it is commanded
+    lets, entries = machine.entries or jacobian_entries(mechanism)  # x, y and z are those of a commanded point
     found: dict[sp.Symbol, Let] = {}
     for s in (*machine.at_axes, *margin_lets(mechanism, machine.assignments), *lets):
         if isinstance(s, Let):
@@ -183,19 +198,19 @@ def _at_axes(machine: Machine) -> list[Statement]:
     width = len(mechanism.joints)
     for r, row in enumerate(machine.rows):
         for k, j in enumerate(mechanism.joints):
-            power = int(not j.is_angle) - int(row in COORDINATE_NAMES)
+            power = int(not j.axis_is_angle) - int(row in COORDINATE_NAMES)
             value = entries[r * width + k] * SCALE**power if j in machine.inverse.moving else _ZERO
-            name = _rate(r, k)
+            name = rate(r, k)
             found[name] = Let(name, value)
     axes = {j.axis: tried(j) for j in mechanism.joints}
     return [rewritten(s, lambda e: e.xreplace(axes)) for s in found.values()]
 
 
-def _rate(row: int, column: int) -> sp.Symbol:
+def rate(row: int, column: int) -> sp.Symbol:
     return real(f"rate_{row + 1}_{column + 1}")
 
 
-def _error(machine: Machine) -> list[Statement]:
+def error_at_step(machine: Machine) -> list[Statement]:
     """The error of the pose in the rows of the Jacobian, and its size; one more where the rotations are opposite."""
     goal = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES])
     here = sp.Matrix(3, 3, ROTATION_ENTRIES)
@@ -236,16 +251,17 @@ def _sides(machine: Machine) -> list[Statement]:
     wrong = {a: flag(f"beside_{a.branch.name}") for a in machine.assignments}
     sides = [Let(w, sp.Lt(ToReal(a.sigma) * real(f"branch_{a.branch.name}"), -2 * NEARLY)) for a, w in wrong.items()]
     is_last = sp.Or(sp.Gt(2 * error, BEFORE), sp.Le(LEFT, 0))
-    is_close = sp.Or(sp.Le(error, BOUNDARY), sp.And(sp.Le(error, CONVERGED), is_last))
+    bound = BOUNDARY if machine.deviates is None else EXACT
+    is_close = sp.Or(sp.Le(error, bound), sp.And(sp.Le(error, CONVERGED), is_last))
     return [
         *sides,
         Let(close, is_close, "the error is rounding, and steps make it no smaller"),
-        Let(met, sp.And(close, *(sp.Not(w) for w in wrong.values()), *_possible(machine))),
+        Let(met, sp.And(close, *(sp.Not(w) for w in wrong.values()), *possible(machine))),
         Let(MIRRORS, sp.And(close, sp.Or(*wrong.values()))),
     ]
 
 
-def _possible(machine: Machine) -> list[sp.Basic]:
+def possible(machine: Machine) -> list[sp.Basic]:
     """The conditions of forward kinematics, such as those of positive quantities."""
     axes = {j.axis: tried(j) for j in machine.mechanism.joints}
     refusals = (s for s in machine.at_axes if isinstance(s, Require) and s.otherwise is Status.IMPOSSIBLE)
@@ -255,7 +271,7 @@ def _possible(machine: Machine) -> list[sp.Basic]:
 def _step(machine: Machine) -> list[Statement]:
     """The step of damped least squares, J^T (J J^T + d)^-1 e, and the divisor that keeps it within bounds."""
     size, width = len(machine.rows), len(machine.mechanism.joints)
-    jacobian = sp.Matrix(size, width, lambda r, k: _rate(r, k))
+    jacobian = sp.Matrix(size, width, lambda r, k: rate(r, k))
     product, damping = jacobian * jacobian.T, real("damping")
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i in range(size) for j in range(i, size)}
     matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
@@ -263,7 +279,8 @@ def _step(machine: Machine) -> list[Statement]:
     steps = [real(f"step_{j.key}") for j in machine.mechanism.joints]
     length = real("step_length")
     return [
-        Let(damping, larger(SHARE_OF_DAMPING * real("error"), LEAST_DAMPING)),
+        Let(_NO_NEARER, sp.Gt(real("error"), BEFORE)),
+        Let(damping, larger((SHARE_OF_DAMPING if machine.deviates is None else SHARE) * real("error"), LEAST_DAMPING)),
         *(Let(n, product[k] + (damping if k[0] == k[1] else 0)) for k, n in names.items()),
         Solve(tuple(multipliers), matrix, tuple(real(f"error_{k + 1}") for k in range(size))),
         *(Let(n, v) for n, v in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
@@ -284,8 +301,11 @@ def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
     """The axis value behind a step: the start of the next attempt; if the pose is met on another branch, the closed
     form with what is known there, or the mirror image; else the step.
     """
-    unit = 1 / DEGREE if joint.is_angle else SCALE
+    unit = 1 / DEGREE if joint.axis_is_angle else SCALE
     moved = tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
     beside = [flag(f"beside_{a.branch.name}") for a in machine.assignments if a.determinant.step == joint.symbol]
-    mirrored = Select(beside[0], 2 * start - tried(joint), tried(joint)) if beside else tried(joint)
+    across = 2 * start - tried(joint)
+    mirrored = Select(beside[0], across, tried(joint)) if beside else tried(joint)
+    if machine.deviates is not None:
+        mirrored, start = across, start + BEYOND * (start - tried(joint))
     return Select(sp.Or(ANOTHER, AGAIN), start, Select(MIRRORS, mirrored, moved))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
@@ -19,14 +19,17 @@ from derive.ir.constants import (
     SCANNED,
     STALLED,
 )
+from derive.ir.passes import needed_for
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program
 from derive.ir.symbols import POSITION, ROTATION_ENTRIES, called, count, flag, real
 
-LOST = "lost_digits_"
-"""How the names of flags begin that say that a value exceeds its bound, which lost digits may explain."""
 GOAL = {name: real(f"goal_{name.name}") for name in (*POSITION, *ROTATION_ENTRIES)}
 """The names of the commanded pose in this program."""
+DRAWN = {name: real(f"drawn_{name.name}") for name in GOAL}
+"""The pose that a machine with deviations would have as it is drawn."""
+ASKED = {name: real(f"asked_{name.name}") for name in GOAL}
+"""The pose of which its closed form is asked: if steps meet the goal on another branch, that of the drawing there."""
 LEFT, ATTEMPT, BEFORE = count("passes_left"), count("attempt"), real("error_before")
 ANOTHER, MIRRORS, IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
 LEFT_NOW = count("passes_left_now")
@@ -43,6 +46,13 @@ SCAN_ENDS = SCANNED + REFINED + 2
 """The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, some
 beside the nearest, ever closer, and this one from the nearest of all.
 """
+OFTEN_FREE = sp.Float("0.1")
+"""The conditioning at which the closed form of a drawing tells little of an angle of a machine with deviations."""
+BEYOND = real("beyond_the_start")
+"""How far, from where the steps ended, an attempt starts beyond what the closed form gives: they ended beside a fold.
+"""
+MOVES = 6
+"""The attempts before these of a machine with deviations, whose drawing is asked for a pose that is moved."""
 _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 
 
@@ -51,18 +61,20 @@ def tried(joint: Joint) -> sp.Symbol:
     return real(f"tried_{joint.key}")
 
 
-def next_attempt(following: sp.Symbol) -> tuple[Let, ...]:
+def next_attempt(following: sp.Symbol, deviates: bool) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
     nearer = flag("is_nearer")
     far = Select(refines(following), BESIDE, _ZERO)
-    free = Select(sp.Gt(following, 0), Select(sp.Gt(following, SCANNED + 1), NEARLY_FREE, DOUBTFUL), FREE_ANGLE)
+    far_from_free, nearer_free = (OFTEN_FREE, OFTEN_FREE) if deviates else (DOUBTFUL, NEARLY_FREE)
+    free = Select(sp.Gt(following, 0), Select(sp.Gt(following, SCANNED + 1), nearer_free, far_from_free), FREE_ANGLE)
     cost = Select(sp.Gt(real("error"), STALLED * BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
     return (
         Let(ANOTHER, sp.Le(LEFT, 0)),
         Let(LEFT_NOW, LEFT - cost),
         Let(following, ATTEMPT + Select(ANOTHER, _ONE, _ZERO)),
         Let(AGAIN, sp.And(MIRRORS, sp.Gt(LEFT, PASSES // 2)), "what is nearly free is known now"),
-        Let(FREE, Select(AGAIN, DOUBTFUL, free)),
+        Let(FREE, Select(AGAIN, FREE_ANGLE if deviates else DOUBTFUL, free)),
+        *(_asked(following) if deviates else ()),
         Let(nearer, sp.And(is_scan(ATTEMPT), sp.Lt(LEFT_OVER, NEAREST))),
         Let(NEAREST_NOW, Select(nearer, LEFT_OVER, NEAREST)),
         Let(NEAREST_TURN_NOW, Select(nearer, TURN, NEAREST_TURN)),
@@ -74,11 +86,31 @@ def next_attempt(following: sp.Symbol) -> tuple[Let, ...]:
     )
 
 
-def ending(closed: Sequence[Let]) -> Let:
-    """The flag that ends all attempts: another start is wanted, but no angle is nearly free, so that it is the same."""
+def _asked(following: sp.Symbol) -> Iterator[Let]:
+    """The pose of which the closed form of a machine with deviations is asked: that of the drawing where the steps are,
+    moved by what they miss; in the attempts of every machine the goal.
+    """
+    moves = flag("moves_the_goal")
+    yield Let(moves, sp.Or(MIRRORS, sp.Le(following, 0)))
+    tries = ToReal(following + MOVES - 1)
+    yield Let(BEYOND, Select(sp.And(ANOTHER, sp.Lt(following, 0)), tries**2, _ZERO))
+    goal, here, drawn = (
+        sp.Matrix(3, 3, [table[r] for r in ROTATION_ENTRIES])
+        for table in (GOAL, {r: r for r in ROTATION_ENTRIES}, DRAWN)
+    )
+    missed = [GOAL[c] - c for c in POSITION]
+    moved = [*(DRAWN[c] + m for c, m in zip(POSITION, missed, strict=True)), *(goal * here.T * drawn)]
+    for (name, asked), value in zip(ASKED.items(), moved, strict=True):
+        yield Let(asked, Select(moves, value, GOAL[name]))
+
+
+def ending(closed: Sequence[Let], *further: sp.Basic) -> Let:
+    """The flag that ends all attempts: another start is wanted, but no angle is nearly free, so that it is the same.
+    further: what has to hold, too.
+    """
     tests = {test for let in closed for test in let.value.atoms(sp.StrictGreaterThan, sp.LessThan)}
     known = [sp.Gt(test.lhs, test.rhs) for test in tests if test.rhs.has(FREE)]
-    return Let(ENDS, sp.And(ANOTHER, *known))
+    return Let(ENDS, sp.And(ANOTHER, *known, *further))
 
 
 def is_scan(attempt: sp.Symbol) -> sp.Basic:
@@ -91,10 +123,10 @@ def refines(attempt: sp.Symbol) -> sp.Basic:
     return sp.And(sp.Gt(attempt, SCANNED + 1), sp.Lt(attempt, SCAN_ENDS))
 
 
-def closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict[Joint, sp.Expr]]:
+def closed_form(mechanism: Mechanism, branch: Program, deviates: bool) -> tuple[list[Let], dict[Joint, sp.Expr]]:
     """The closed form of a start under names of its own, and the axis values in it."""
-    lets = branch.lets()
-    names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | GOAL
+    lets = [s for s in needed_for(branch.lets(), [o.value for o in branch.outputs]) if isinstance(s, Let)]
+    names = {let.name: called(f"closed_{let.name.name}", let.name) for let in lets} | (ASKED if deviates else GOAL)
     names |= {FREE_ANGLE: FREE}
     turned = {
         reference_value(j): {j.reference: Select(AGAIN, tried(j), j.reference + pow(LATTICE, k, SCANNED) * FREE_TURN)}
@@ -102,9 +134,7 @@ def closed_form(mechanism: Mechanism, branch: Program) -> tuple[list[Let], dict[
         if j.is_angle
     }
     found = [
-        Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note)
-        for let in lets
-        if not let.name.name.startswith(LOST)
+        Let(names[let.name], let.value.xreplace(turned.get(let.name, {})).xreplace(names), let.note) for let in lets
     ]
     starts = {j: o.value.xreplace(names) for j, o in zip(mechanism.joints, branch.outputs, strict=True)}
     return found, starts

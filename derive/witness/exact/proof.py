@@ -129,6 +129,10 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
     """
     if kin.mechanism.search is not None:
         return Exact(0, "its roots are searched along a joint")
+    if described.nominal is not None:
+        return Exact(0, "with deviations, the inverse ends in steps on the closure")
+    if kin.mechanism.drives:
+        return Exact(0, "loops move joints of its chain")
     described = _with_exact_ends(with_exact_angles(described))
     try:
         return _checked(kin, described)

@@ -15,7 +15,7 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_38 = k->product_in_lost_digits_38,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -77,15 +77,14 @@ void ac6_threeparallel_regular(const void *machine, const softkin_lanes *given,
     /* 1 + cosine, times the scale */
     const double one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach);
     const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*quotient_in_closed_cos_q3;
-    const bool within_38 = fabs(cos_q3) <= 1.0;
-    const bool lost_digits_38 = (!within_38)
+    const bool lost_digits_q3 = (fabs(cos_q3) > 1.0)
         && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
-        || (fabs(ahead_q1) <= product_in_lost_digits_38));
+        || (fabs(ahead_q1) <= product_in_lost_digits_q3));
     /* digits may be lost */
-    missed += !lost_digits_38 ? 0.0 : 1.0;
+    missed += !lost_digits_q3 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_q3) <= bound_of_cos_q3 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
     const double arm_along_q2 = a2 + a3*cos_q3;
@@ -136,7 +135,7 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_38 = k->product_in_lost_digits_38,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3,
       quotient_in_closed_cos_q3 = k->quotient_in_closed_cos_q3,
       quotient_in_closed_sin_q3 = k->quotient_in_closed_sin_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
@@ -204,11 +203,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down);
     const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
         *quotient_in_closed_cos_q3;
-    const bool within_38_left_down = fabs(cos_q3_left_down) <= 1.0;
-    const bool lost_digits_38_left_down = (!within_38_left_down)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    const bool lost_digits_q3_left_down = (fabs(cos_q3_left_down) > 1.0)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_q3));
     /* digits may be lost */
-    missed += !lost_digits_38_left_down ? 0.0 : 1.0;
+    missed += !lost_digits_q3_left_down ? 0.0 : 1.0;
     const double r31_from_q1_before_q56_left_up = -r31_from_q1_before_q56_left_down;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_left_up = -ahead_q1_right - d5*r31_from_q1_before_q56_left_up;
@@ -224,11 +222,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up);
     const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
         *quotient_in_closed_cos_q3;
-    const bool within_38_left_up = fabs(cos_q3_left_up) <= 1.0;
-    const bool lost_digits_38_left_up = (!within_38_left_up)
-        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    const bool lost_digits_q3_left_up = (fabs(cos_q3_left_up) > 1.0)
+        && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_q3));
     /* digits may be lost */
-    missed += !lost_digits_38_left_up ? 0.0 : 1.0;
+    missed += !lost_digits_q3_left_up ? 0.0 : 1.0;
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
     const double cos_q1_right = (ahead_q1_right_times_wrist_x - d4_times_wrist_y)/distance_q1_squared;
     const double sin_q1_right = (ahead_q1_right_times_wrist_y + d4_times_wrist_x)/distance_q1_squared;
@@ -265,11 +262,10 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
         *(a2_minus_a3 + reach_right_down);
     const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
         *quotient_in_closed_cos_q3;
-    const bool within_38_right_down = fabs(cos_q3_right_down) <= 1.0;
-    const bool lost_digits_38_right_down = (!within_38_right_down)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    const bool lost_digits_q3_right_down = (fabs(cos_q3_right_down) > 1.0)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_q3));
     /* digits may be lost */
-    missed += !lost_digits_38_right_down ? 0.0 : 1.0;
+    missed += !lost_digits_q3_right_down ? 0.0 : 1.0;
     const double r31_from_q1_before_q56_right_up = -r31_from_q1_before_q56_right_down;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_right_up = ahead_q1_right - d5*r31_from_q1_before_q56_right_up;
@@ -285,17 +281,16 @@ void ac6_threeparallel_regular_all(const void *machine, const softkin_lanes *giv
     const double one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up);
     const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
         *quotient_in_closed_cos_q3;
-    const bool within_38_right_up = fabs(cos_q3_right_up) <= 1.0;
-    const bool lost_digits_38_right_up = (!within_38_right_up)
-        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_38));
+    const bool lost_digits_q3_right_up = (fabs(cos_q3_right_up) > 1.0)
+        && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= product_in_lost_digits_q3));
     /* digits may be lost */
-    missed += !lost_digits_38_right_up ? 0.0 : 1.0;
-    missed += reach_left_down > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += !lost_digits_q3_right_up ? 0.0 : 1.0;
+    missed += reach_left_down > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
-    missed += reach_left_up > product_in_lost_digits_38 ? 0.0 : 1.0;
-    missed += reach_right_down > product_in_lost_digits_38 ? 0.0 : 1.0;
-    missed += reach_right_up > product_in_lost_digits_38 ? 0.0 : 1.0;
+    missed += reach_left_up > product_in_lost_digits_q3 ? 0.0 : 1.0;
+    missed += reach_right_down > product_in_lost_digits_q3 ? 0.0 : 1.0;
+    missed += reach_right_up > product_in_lost_digits_q3 ? 0.0 : 1.0;
     const double arm_along_q2_left_down = a2 + a3*cos_q3_left_down;
     const double product_in_along_q2_left_up_down = arm_along_q2_left_down*wrist_x_from_q1_left_down;
     /* sine squared, times the squared scale */

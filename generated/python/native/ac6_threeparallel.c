@@ -695,12 +695,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* 1 + cosine, times the scale */
   const double one_plus_cos_q3 = (reach - k->a2_minus_a3)*(k->a2_minus_a3 + reach);
   const double cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)*k->quotient_in_closed_cos_q3;
-  const bool within_38 = fabs(cos_q3) <= 1.0;
-  const bool lost_digits_38 = (!within_38)
+  const bool lost_digits_q3 = (fabs(cos_q3) > 1.0)
       && ((fabs(q6_radius_of_q5) <= 0.01) || (fabs(radius_q6) <= 0.01)
-      || (fabs(ahead_q1) <= k->product_in_lost_digits_38));
+      || (fabs(ahead_q1) <= k->product_in_lost_digits_q3));
   /* q3: out of reach */
-  if (!(lost_digits_38 || (fabs(cos_q3) <= k->bound_of_cos_q3))) {
+  if (!(lost_digits_q3 || (fabs(cos_q3) <= k->bound_of_cos_q3))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
@@ -711,11 +710,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sine_square_q3 = one_less_cos_q3*one_plus_cos_q3;
   const double sin_q3 = softkin_root(sine_square_q3)*k->quotient_in_closed_sin_q3*sign_elbow;
   const double arm_across_q2 = k->a3*sin_q3;
-  const double away_q2 = reach > k->product_in_lost_digits_38 ? 0.0
+  const double length_difference_q2 = reach > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
-      /(k->product_in_away_q2 + reach);
-  const bool within_49 = away_q2 <= 1e-12;
-  const bool lost_digits_lengths_49 = !within_49;
+      /(k->product_in_length_difference_q2 + reach);
+  const bool lost_digits_q2 = length_difference_q2 > 1e-12;
   /* A1: without a commanded turn, the value nearest to this */
   const double open_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
   const double near_a1 = turn_a1 != 0 ? 360.0*(turn_a1 > 0 ? turn_a1 - 1 : turn_a1) : open_a1;
@@ -767,7 +765,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a6);
   /* if digits were lost, steps on the closure meet the pose */
   double results[7] = {0.0};
-  if (lost_digits_38 || lost_digits_lengths_49) {
+  if (lost_digits_q2 || lost_digits_q3) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, sigma_elbow, sigma_shoulder,
         sigma_wrist, turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6, r11, r12, r13, r21, r22, r23, r31,
         r32, r33, x, y, z, axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6};
@@ -780,7 +778,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       found_a5 = results[5], found_a6 = results[6];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!((met || (away_q2 <= 1e-11)) && (met || (fabs(cos_q3) <= k->bound_of_cos_q3)))) {
+  if (!((met || (length_difference_q2 <= 1e-11)) && (met || (fabs(cos_q3) <= k->bound_of_cos_q3)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
         : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
@@ -1184,9 +1182,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *(k->a2_minus_a3 + reach_left_down);
   const double cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)
       *k->quotient_in_closed_cos_q3;
-  const bool within_38_left_down = fabs(cos_q3_left_down) <= 1.0;
-  const bool lost_digits_38_left_down = (!within_38_left_down)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  const bool lost_digits_q3_left_down = (fabs(cos_q3_left_down) > 1.0)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_q3));
   const double angle_with_q4_left_down = softkin_angle_of(r31_from_q1_before_q56_left_down,
       r33_from_q1_before_q6_left_down);
   const double axis_a6_left_down = k->offset_a6
@@ -1205,7 +1202,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     angle_with_q4_left_up = softkin_angle_of(r31_from_q1_before_q56_left_up, r33_from_q1_before_q6_left_up);
     axis_a6_left_up = k->offset_a6 + softkin_angle_of(sin_q6_left_up, cos_q6_left_up)*SOFTKIN_RADIAN;
   }
-  if (!(!lost_digits_38_left_down)) {
+  if (!(!lost_digits_q3_left_down)) {
     return false;
   }
   /* coordinate of the point that the remaining links must reach */
@@ -1221,10 +1218,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_q3_left_up = (reach_left_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_left_up);
   const double cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)
       *k->quotient_in_closed_cos_q3;
-  const bool within_38_left_up = fabs(cos_q3_left_up) <= 1.0;
-  const bool lost_digits_38_left_up = (!within_38_left_up)
-      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_38_left_up)) {
+  const bool lost_digits_q3_left_up = (fabs(cos_q3_left_up) > 1.0)
+      && ((fabs(radius_q6_left) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_q3));
+  if (!(!lost_digits_q3_left_up)) {
     return false;
   }
   const double r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right;
@@ -1271,9 +1267,8 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       *(k->a2_minus_a3 + reach_right_down);
   const double cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)
       *k->quotient_in_closed_cos_q3;
-  const bool within_38_right_down = fabs(cos_q3_right_down) <= 1.0;
-  const bool lost_digits_38_right_down = (!within_38_right_down)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
+  const bool lost_digits_q3_right_down = (fabs(cos_q3_right_down) > 1.0)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_q3));
   const double angle_with_q4_right_down = softkin_angle_of(r31_from_q1_before_q56_right_down,
       r33_from_q1_before_q6_right_down);
   const double axis_a6_right_down = k->offset_a6
@@ -1293,7 +1288,7 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
         r33_from_q1_before_q6_right_up);
     axis_a6_right_up = k->offset_a6 + softkin_angle_of(sin_q6_right_up, cos_q6_right_up)*SOFTKIN_RADIAN;
   }
-  if (!(!lost_digits_38_right_down)) {
+  if (!(!lost_digits_q3_right_down)) {
     return false;
   }
   /* coordinate of the point that the remaining links must reach */
@@ -1309,10 +1304,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double one_plus_cos_q3_right_up = (reach_right_up - k->a2_minus_a3)*(k->a2_minus_a3 + reach_right_up);
   const double cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)
       *k->quotient_in_closed_cos_q3;
-  const bool within_38_right_up = fabs(cos_q3_right_up) <= 1.0;
-  const bool lost_digits_38_right_up = (!within_38_right_up)
-      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_38));
-  if (!(!lost_digits_38_right_up)) {
+  const bool lost_digits_q3_right_up = (fabs(cos_q3_right_up) > 1.0)
+      && ((fabs(radius_q6_right) <= 0.01) || (fabs(ahead_q1_right) <= k->product_in_lost_digits_q3));
+  if (!(!lost_digits_q3_right_up)) {
     return false;
   }
   const double arm_along_q2_left_down = k->a2 + k->a3*cos_q3_left_down;
@@ -1320,13 +1314,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down;
   const double sin_q3_left_up_down = softkin_root(sine_square_q3_left_down)*k->quotient_in_closed_sin_q3;
   const double arm_across_q2_left_up_down = k->a3*sin_q3_left_up_down;
-  const double away_q2_left_up_down = reach_left_down > k->product_in_lost_digits_38 ? 0.0
+  const double length_difference_q2_left_up_down = reach_left_down > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_left_up_down*arm_across_q2_left_up_down
       + arm_along_q2_left_down*arm_along_q2_left_down - reach_left_down*reach_left_down)
-      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_down);
-  const bool within_49_left_up_down = away_q2_left_up_down <= 1e-12;
-  const bool lost_digits_lengths_49_left_up_down = !within_49_left_up_down;
-  if (!(!lost_digits_lengths_49_left_up_down)) {
+      *k->one_by_machine_scale/(k->product_in_length_difference_q2 + reach_left_down);
+  const bool lost_digits_q2_left_up_down = length_difference_q2_left_up_down > 1e-12;
+  if (!(!lost_digits_q2_left_up_down)) {
     return false;
   }
   const double arm_along_q2_left_up = k->a2 + k->a3*cos_q3_left_up;
@@ -1334,12 +1327,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up;
   const double sin_q3_left_up_up = softkin_root(sine_square_q3_left_up)*k->quotient_in_closed_sin_q3;
   const double arm_across_q2_left_up_up = k->a3*sin_q3_left_up_up;
-  const double away_q2_left_up_up = reach_left_up > k->product_in_lost_digits_38 ? 0.0
+  const double length_difference_q2_left_up_up = reach_left_up > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_left_up_up*arm_across_q2_left_up_up + arm_along_q2_left_up*arm_along_q2_left_up
-      - reach_left_up*reach_left_up)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_left_up);
-  const bool within_49_left_up_up = away_q2_left_up_up <= 1e-12;
-  const bool lost_digits_lengths_49_left_up_up = !within_49_left_up_up;
-  if (!(!lost_digits_lengths_49_left_up_up)) {
+      - reach_left_up*reach_left_up)*k->one_by_machine_scale
+      /(k->product_in_length_difference_q2 + reach_left_up);
+  const bool lost_digits_q2_left_up_up = length_difference_q2_left_up_up > 1e-12;
+  if (!(!lost_digits_q2_left_up_up)) {
     return false;
   }
   const double arm_along_q2_right_down = k->a2 + k->a3*cos_q3_right_down;
@@ -1347,13 +1340,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down;
   const double sin_q3_right_up_down = softkin_root(sine_square_q3_right_down)*k->quotient_in_closed_sin_q3;
   const double arm_across_q2_right_up_down = k->a3*sin_q3_right_up_down;
-  const double away_q2_right_up_down = reach_right_down > k->product_in_lost_digits_38 ? 0.0
+  const double length_difference_q2_right_up_down = reach_right_down > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_right_up_down*arm_across_q2_right_up_down
       + arm_along_q2_right_down*arm_along_q2_right_down - reach_right_down*reach_right_down)
-      *k->one_by_machine_scale/(k->product_in_away_q2 + reach_right_down);
-  const bool within_49_right_up_down = away_q2_right_up_down <= 1e-12;
-  const bool lost_digits_lengths_49_right_up_down = !within_49_right_up_down;
-  if (!(!lost_digits_lengths_49_right_up_down)) {
+      *k->one_by_machine_scale/(k->product_in_length_difference_q2 + reach_right_down);
+  const bool lost_digits_q2_right_up_down = length_difference_q2_right_up_down > 1e-12;
+  if (!(!lost_digits_q2_right_up_down)) {
     return false;
   }
   const double arm_along_q2_right_up = k->a2 + k->a3*cos_q3_right_up;
@@ -1361,13 +1353,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up;
   const double sin_q3_right_up_up = softkin_root(sine_square_q3_right_up)*k->quotient_in_closed_sin_q3;
   const double arm_across_q2_right_up_up = k->a3*sin_q3_right_up_up;
-  const double away_q2_right_up_up = reach_right_up > k->product_in_lost_digits_38 ? 0.0
+  const double length_difference_q2_right_up_up = reach_right_up > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_right_up_up*arm_across_q2_right_up_up
       + arm_along_q2_right_up*arm_along_q2_right_up - reach_right_up*reach_right_up)*k->one_by_machine_scale
-      /(k->product_in_away_q2 + reach_right_up);
-  const bool within_49_right_up_up = away_q2_right_up_up <= 1e-12;
-  const bool lost_digits_lengths_49_right_up_up = !within_49_right_up_up;
-  if (!(!lost_digits_lengths_49_right_up_up)) {
+      /(k->product_in_length_difference_q2 + reach_right_up);
+  const bool lost_digits_q2_right_up_up = length_difference_q2_right_up_up > 1e-12;
+  if (!(!lost_digits_q2_right_up_up)) {
     return false;
   }
   /* q3: out of reach */
@@ -1633,8 +1624,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* largest cosine within reach: 1, and the rounding of squared lengths */
   const double bound_of_cos_q3 = 1.0000000000005 + 5e-16*machine_scale*machine_scale/(p->a2*p->a3);
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
-  const double product_in_lost_digits_38 = 0.01*machine_scale;
-  const double product_in_away_q2 = 1e-11*machine_scale;
+  const double product_in_lost_digits_q3 = 0.01*machine_scale;
+  const double product_in_length_difference_q2 = 1e-11*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double a2_plus_a3 = p->a2 + p->a3;
   const double a2_minus_a3 = p->a2 - p->a3;
@@ -1680,8 +1671,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.rounding_q1 = rounding_q1;
   made.bound_of_cos_q3 = bound_of_cos_q3;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
-  made.product_in_lost_digits_38 = product_in_lost_digits_38;
-  made.product_in_away_q2 = product_in_away_q2;
+  made.product_in_lost_digits_q3 = product_in_lost_digits_q3;
+  made.product_in_length_difference_q2 = product_in_length_difference_q2;
   made.one_by_machine_scale = one_by_machine_scale;
   made.a2_plus_a3 = a2_plus_a3;
   made.a2_minus_a3 = a2_minus_a3;

@@ -16,7 +16,7 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
@@ -58,13 +58,12 @@ void articulatedrobot_6dof_regular(const void *machine, const softkin_lanes *giv
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
-    const bool within_23 = fabs(cos_swing_q3) <= 1.0;
-    const bool lost_digits_23 = (!within_23) && (fabs(ahead_q1) <= product_in_lost_digits_23);
+    const bool lost_digits_q3 = (fabs(ahead_q1) <= product_in_lost_digits_q3) && (fabs(cos_swing_q3) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_23 ? 0.0 : 1.0;
+    missed += !lost_digits_q3 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_23 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
@@ -147,7 +146,7 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
       mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, mid_a4 = k->mid_a4, mid_a5 = k->mid_a5, mid_a6 = k->mid_a6,
       offset_a1 = k->offset_a1, offset_a2 = k->offset_a2, offset_a3 = k->offset_a3, offset_a4 = k->offset_a4,
       offset_a5 = k->offset_a5, offset_a6 = k->offset_a6,
-      product_in_lost_digits_23 = k->product_in_lost_digits_23, rounding_q1 = k->rounding_q1,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0, single_a4 = k->single_a4 ? 1.0 : 0.0,
       single_a5 = k->single_a5 ? 1.0 : 0.0, single_a6 = k->single_a6 ? 1.0 : 0.0;
@@ -204,18 +203,17 @@ void articulatedrobot_6dof_regular_all(const void *machine, const softkin_lanes 
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3_front = -(one_less_cos_q3_front - one_plus_cos_q3_front)/sum_q3_front;
-    const bool within_23_front = fabs(cos_swing_q3_front) <= 1.0;
-    const bool lost_digits_23_front = (!within_23_front)
-        && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
+    const bool lost_digits_q3_front = (fabs(ahead_q1_front) <= product_in_lost_digits_q3)
+        && (fabs(cos_swing_q3_front) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_23_front ? 0.0 : 1.0;
+    missed += !lost_digits_q3_front ? 0.0 : 1.0;
     const double cos_swing_q3_back = -(one_less_cos_q3_back - one_plus_cos_q3_back)/sum_q3_back;
-    const bool within_23_back = fabs(cos_swing_q3_back) <= 1.0;
-    const bool lost_digits_23_back = (!within_23_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_23);
+    const bool lost_digits_q3_back = (fabs(ahead_q1_front) <= product_in_lost_digits_q3)
+        && (fabs(cos_swing_q3_back) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_23_back ? 0.0 : 1.0;
-    missed += reach_front > product_in_lost_digits_23 ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_23 ? 0.0 : 1.0;
+    missed += !lost_digits_q3_back ? 0.0 : 1.0;
+    missed += reach_front > product_in_lost_digits_q3 ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;

@@ -105,9 +105,9 @@ typedef struct {
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a1,
       a2, d3, a3, d4, d6, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6, machine_scale,
-      effective_q3, rounding_q1, product_in_lost_digits_23, a2_minus_effective_q3, product_in_away_q2,
-      machine_scale_times_free_angle, one_by_machine_scale, one_by_effective_q3, a2_plus_effective_q3,
-      d4_by_effective_q3, a3_by_effective_q3;
+      effective_q3, rounding_q1, product_in_lost_digits_q3, a2_minus_effective_q3,
+      product_in_length_difference_q2, machine_scale_times_free_angle, one_by_machine_scale,
+      one_by_effective_q3, a2_plus_effective_q3, d4_by_effective_q3, a3_by_effective_q3;
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6;
 } articulatedrobot_6dof_machine;
 

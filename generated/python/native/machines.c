@@ -18,7 +18,9 @@
 #include "gantry3.h"
 #include "gantrycutter2.h"
 #include "gantrycutter3.h"
+#include "headhead_ca.h"
 #include "headhead_cb.h"
+#include "headtable_ac.h"
 #include "headtable_bc.h"
 #include "hexaglide.h"
 #include "hexapod.h"
@@ -26,6 +28,8 @@
 #include "hgantry3.h"
 #include "kin_5axes.h"
 #include "mc_kin_type_12_xy.h"
+#include "nutatinghead_cb.h"
+#include "nutatingtable_bc.h"
 #include "p2c_type1.h"
 #include "p2c_type2.h"
 #include "p2x_type1.h"
@@ -47,9 +51,11 @@
 #include "scaraonrail.h"
 #include "sccc.h"
 #include "tabletable_ac.h"
+#include "tabletable_bc.h"
 #include "tgantry2.h"
 #include "tgantry3.h"
 #include "tool.h"
+#include "transmit.h"
 #include "tripod_linear.h"
 #include "tripod_p3z.h"
 #include "tripod_rotary.h"
@@ -76,8 +82,12 @@ softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
 softkin_regular gantrycutter3_regular;
+softkin_regular headhead_ca_regular;
+softkin_regular_all headhead_ca_regular_all;
 softkin_regular headhead_cb_regular;
 softkin_regular_all headhead_cb_regular_all;
+softkin_regular headtable_ac_regular;
+softkin_regular_all headtable_ac_regular_all;
 softkin_regular headtable_bc_regular;
 softkin_regular_all headtable_bc_regular_all;
 softkin_regular hgantry2_regular;
@@ -86,6 +96,10 @@ softkin_regular kin_5axes_regular;
 softkin_regular_all kin_5axes_regular_all;
 softkin_regular mc_kin_type_12_xy_regular;
 softkin_regular_all mc_kin_type_12_xy_regular_all;
+softkin_regular nutatinghead_cb_regular;
+softkin_regular_all nutatinghead_cb_regular_all;
+softkin_regular nutatingtable_bc_regular;
+softkin_regular_all nutatingtable_bc_regular_all;
 softkin_regular p2c_type1_regular;
 softkin_regular_all p2c_type1_regular_all;
 softkin_regular p2c_type2_regular;
@@ -120,8 +134,11 @@ softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
+softkin_regular tabletable_bc_regular;
+softkin_regular_all tabletable_bc_regular_all;
 softkin_regular tgantry2_regular;
 softkin_regular tgantry3_regular;
+softkin_regular transmit_regular;
 softkin_regular tripod_linear_regular;
 softkin_regular_all tripod_linear_regular_all;
 softkin_regular tripod_p3z_regular;
@@ -134,12 +151,12 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 2ed70b9c493da7b6", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 59e418ca5544d8f1", &ac6_threeparallel_mechanism,
+    {"ac6_rzryryrxryrz_j6offset d6b7a937dc986248", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_threeparallel a721580085cf1d29", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof bf408dbd843a3753", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof 4ae5258f61d7ca33", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
     {"bipod_rotary b59b584466428d5c", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
@@ -154,7 +171,10 @@ const softkin_native softkin_machines[] = {
     {"gantry3 9b8635e5f566e3b6", &gantry3_mechanism, {gantry3_regular, NULL}},
     {"gantrycutter2 5043f79761288349", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
     {"gantrycutter3 91ad0640bfc2fd45", &gantrycutter3_mechanism, {gantrycutter3_regular, NULL}},
+    {"headhead_ca a36b01f90c6fff29", &headhead_ca_mechanism, {headhead_ca_regular, headhead_ca_regular_all}},
     {"headhead_cb 945aa2d28ffeb377", &headhead_cb_mechanism, {headhead_cb_regular, headhead_cb_regular_all}},
+    {"headtable_ac f34ea27e13557012", &headtable_ac_mechanism,
+        {headtable_ac_regular, headtable_ac_regular_all}},
     {"headtable_bc c3aa06731787cf95", &headtable_bc_mechanism,
         {headtable_bc_regular, headtable_bc_regular_all}},
     {"hexaglide 03c9f746a143d056", &hexaglide_mechanism, {NULL, NULL}},
@@ -162,8 +182,12 @@ const softkin_native softkin_machines[] = {
     {"hgantry2 d5e006ff3bb5fb70", &hgantry2_mechanism, {hgantry2_regular, NULL}},
     {"hgantry3 506a63bef67aff6b", &hgantry3_mechanism, {hgantry3_regular, NULL}},
     {"kin_5axes 6ed7d0e58bbb1a05", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
-    {"mc_kin_type_12_xy d20273cef76cc241", &mc_kin_type_12_xy_mechanism,
+    {"mc_kin_type_12_xy 8613d87872cad463", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
+    {"nutatinghead_cb 681f70785b60cbd4", &nutatinghead_cb_mechanism,
+        {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
+    {"nutatingtable_bc 9e5a88cef1e91590", &nutatingtable_bc_mechanism,
+        {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 b933ceccadc315dd", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
     {"p2c_type2 942b57fba31e0bcb", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
     {"p2x_type1 94c7c821c18ef4c4", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
@@ -174,23 +198,26 @@ const softkin_native softkin_machines[] = {
     {"planar_3rrr e5024333caf97add", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z ac9610c84473bd12", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr 87af57219db5c9a0", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"pos_rrr 5601d9cd2720ec64", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"scara2_z b37de2a39400f06c", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 33cf2d6b22d4e16b", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z f177072bc3d7d9c6", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
     {"scara3_zccc 411e1d64cce8dad8", &scara3_zccc_mechanism, {scara3_zccc_regular, scara3_zccc_regular_all}},
-    {"scara4_cczc_zccoupled a75095bde19021b6", &scara4_cczc_zccoupled_mechanism,
+    {"scara4_cczc_zccoupled d7a204d91788c7a4", &scara4_cczc_zccoupled_mechanism,
         {scara4_cczc_zccoupled_regular, scara4_cczc_zccoupled_regular_all}},
     {"scara4_zccc c418b750fe2ea7ae", &scara4_zccc_mechanism, {scara4_zccc_regular, scara4_zccc_regular_all}},
-    {"scara4_zccoupled_type1 3edcd20bf37a2ff6", &scara4_zccoupled_type1_mechanism,
+    {"scara4_zccoupled_type1 a5ed80bacc15434a", &scara4_zccoupled_type1_mechanism,
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
+    {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
+        {tabletable_bc_regular, tabletable_bc_regular_all}},
     {"tgantry2 83f275af2946655f", &tgantry2_mechanism, {tgantry2_regular, NULL}},
     {"tgantry3 ebec7448346ecd96", &tgantry3_mechanism, {tgantry3_regular, NULL}},
     {"tool dc1763445a1b1311", &tool_mechanism, {NULL, NULL}},
+    {"transmit a571911b83232328", &transmit_mechanism, {transmit_regular, NULL}},
     {"tripod_linear dddf88ea5aa0e6dd", &tripod_linear_mechanism,
         {tripod_linear_regular, tripod_linear_regular_all}},
     {"tripod_p3z 16cef44b1a3e8642", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},

@@ -21,14 +21,14 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_w = k->product_in_branch_w,
+      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_crank = k->product_in_branch_crank,
       quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
-        sigma_t = given->signs[0][lane], sigma_w = given->signs[1][lane], ref_a1 = given->reference[0][lane],
-        ref_a2 = given->reference[1][lane];
+        sigma_elbow = given->signs[0][lane], sigma_crank = given->signs[1][lane],
+        ref_a1 = given->reference[0][lane], ref_a2 = given->reference[1][lane];
     double missed = misses[lane];
     /* z: a planar machine has none */
     missed += fabs(z) <= machine_scale_times_plane ? 0.0 : 1.0;
@@ -50,18 +50,19 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1;
     /* a1: out of reach */
     missed += fabs(cos_swing_a1) <= 1.0000000000005 ? 0.0 : 1.0;
-    const double sign_t = sigma_t; /* t: +1 left, -1 right */
+    const double sign_elbow = sigma_elbow; /* elbow: +1 left, -1 right */
     /* sine squared, times the squared scale */
     const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-    const double sin_swing_a1 = -2.0*softkin_lane_root(sine_square_a1)*sign_t/sum_a1;
+    const double sin_swing_a1 = -2.0*softkin_lane_root(sine_square_a1)*sign_elbow/sum_a1;
     const double sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/effective_a1;
     /* rod rear: known part of its vector */
     const double span_rear_x = -link_length_3_by_link_length_2*span_upper_x;
-    const double along_a2 = (link_length_2*span_rear_x - product_in_branch_w*sin_a1)*one_by_link_length_2;
+    const double along_a2 = (link_length_2*span_rear_x - product_in_branch_crank*sin_a1)*one_by_link_length_2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/effective_a1;
     const double span_rear_y = -link_length_3_by_link_length_2*span_upper_y;
-    const double across_a2 = one_by_link_length_2*(product_in_branch_w*cos_a1 - link_length_2*span_rear_y);
+    const double across_a2 = one_by_link_length_2
+        *(product_in_branch_crank*cos_a1 - link_length_2*span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2 = softkin_lane_root(across_a2*across_a2 + along_a2*along_a2);
     /* a2: its effective length is too short */
@@ -84,10 +85,10 @@ void mc_kin_type_12_xy_regular(const void *machine, const softkin_lanes *given,
     const double rod_1_x = x - centre_1_x;
     const double centre_1_y = swap_xy ? pivot_upper_x : pivot_upper_y;
     const double rod_1_y = y - centre_1_y;
-    const double sign_w = sigma_w; /* w: +1 left, -1 right */
+    const double sign_crank = sigma_crank; /* crank: +1 left, -1 right */
     /* sine squared, times the squared scale */
     const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-    const double sin_swing_a2 = -2.0*softkin_lane_root(sine_square_a2)*sign_w/sum_a2;
+    const double sin_swing_a2 = -2.0*softkin_lane_root(sine_square_a2)*sign_crank/sum_a2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2;
     /* rod rear: centre about which it swings */
@@ -128,7 +129,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
       link_length_5_times_shortest_link = k->link_length_5_times_shortest_link,
       machine_scale_times_plane = k->machine_scale_times_plane, mid_a1 = k->mid_a1, mid_a2 = k->mid_a2,
       min_type2_margin = k->min_type2_margin, offset_a1 = k->offset_a1, offset_a2 = k->offset_a2,
-      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_w = k->product_in_branch_w,
+      one_by_link_length_2 = k->one_by_link_length_2, product_in_branch_crank = k->product_in_branch_crank,
       quotient_in_type2_arms_aligned = k->quotient_in_type2_arms_aligned,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       sum_in_pivot_rear_x = k->sum_in_pivot_rear_x, swap_xy = k->swap_xy ? 1.0 : 0.0;
@@ -166,7 +167,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     /* rod rear: known part of its vector */
     const double span_rear_x = -link_length_3_by_link_length_2*span_upper_x;
     const double link_length_2_times_span_rear_x = link_length_2*span_rear_x;
-    const double along_a2_left = (link_length_2_times_span_rear_x - product_in_branch_w*sin_a1_left)
+    const double along_a2_left = (link_length_2_times_span_rear_x - product_in_branch_crank*sin_a1_left)
         *one_by_link_length_2;
     const double cos_swing_a1_times_span_upper_y = span_upper_y*cos_swing_a1;
     const double sin_swing_a1_right_times_span_upper_x = span_upper_x*sin_swing_a1_right;
@@ -176,7 +177,7 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     const double span_rear_y = -link_length_3_by_link_length_2*span_upper_y;
     const double link_length_2_times_span_rear_y = link_length_2*span_rear_y;
     const double across_a2_left = one_by_link_length_2
-        *(product_in_branch_w*cos_a1_left - link_length_2_times_span_rear_y);
+        *(product_in_branch_crank*cos_a1_left - link_length_2_times_span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2_left = softkin_lane_root(across_a2_left*across_a2_left
         + along_a2_left*along_a2_left);
@@ -192,13 +193,13 @@ void mc_kin_type_12_xy_regular_all(const void *machine, const softkin_lanes *giv
     missed += sum_a2_left > 0.0 ? 0.0 : 1.0;
     const double sin_a1_right = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y)
         /effective_a1;
-    const double along_a2_right = (link_length_2_times_span_rear_x - product_in_branch_w*sin_a1_right)
+    const double along_a2_right = (link_length_2_times_span_rear_x - product_in_branch_crank*sin_a1_right)
         *one_by_link_length_2;
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
     const double cos_a1_right = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x)
         /effective_a1;
     const double across_a2_right = one_by_link_length_2
-        *(product_in_branch_w*cos_a1_right - link_length_2_times_span_rear_y);
+        *(product_in_branch_crank*cos_a1_right - link_length_2_times_span_rear_y);
     /* effective length of the arm that a2 turns */
     const double effective_a2_right = softkin_lane_root(across_a2_right*across_a2_right
         + along_a2_right*along_a2_right);

@@ -66,8 +66,8 @@ static const softkin_parameter PARAMETERS[] = {
 };
 
 static const softkin_byte CONFIGURATION[] = {
-  {"t", "left", "right", 1},
-  {"w", "left", "right", 1},
+  {"elbow", "left", "right", 1},
+  {"crank", "left", "right", 1},
   {"A1", "", "", 0},
   {"A2", "", "", 0},
 };
@@ -154,13 +154,13 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   if (!(height_square >= -k->link_length_2_squared_times_rounding)) {
     return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
   }
-  const double branch_t = k->one_by_link_length_2*(span_upper_x*cos_a1 - span_upper_y*sin_a1);
+  const double branch_elbow = k->one_by_link_length_2*(span_upper_x*cos_a1 - span_upper_y*sin_a1);
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  const double branch_w = k->quotient_in_branch_w
-      *((k->product_in_branch_w*cos_a1 - k->link_length_2*span_rear_y)*cos_a2
-      + (k->product_in_branch_w*sin_a1 - k->link_length_2*span_rear_x)*sin_a2);
+  const double branch_crank = k->quotient_in_branch_crank
+      *((k->product_in_branch_crank*cos_a1 - k->link_length_2*span_rear_y)*cos_a2
+      + (k->product_in_branch_crank*sin_a1 - k->link_length_2*span_rear_x)*sin_a2);
   frame->position[0] = x;
   frame->position[1] = y;
   frame->position[2] = 0.0;
@@ -173,8 +173,8 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   frame->rotation[2][0] = 0.0;
   frame->rotation[2][1] = 0.0;
   frame->rotation[2][2] = 1.0;
-  margins[0] = branch_t;
-  margins[1] = branch_w;
+  margins[0] = branch_elbow;
+  margins[1] = branch_crank;
   return SOFTKIN_OK;
 }
 
@@ -184,7 +184,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const mc_kin_type_12_xy_machine *k = machine;
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2], ref_a1 = reference[0],
       ref_a2 = reference[1];
-  const int sigma_t = signs[0], sigma_w = signs[1], turn_a1 = turns[0], turn_a2 = turns[1];
+  const int sigma_elbow = signs[0], sigma_crank = signs[1], turn_a1 = turns[0], turn_a2 = turns[1];
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_a1, ref_a2}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
@@ -214,10 +214,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
   const double cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1;
-  const double sign_t = sigma_t; /* t: +1 left, -1 right */
+  const double sign_elbow = sigma_elbow; /* elbow: +1 left, -1 right */
   /* sine squared, times the squared scale */
   const double sine_square_a1 = one_less_cos_a1*one_plus_cos_a1;
-  const double sin_swing_a1 = -2.0*softkin_root(sine_square_a1)*sign_t/divisor_of_cos_a1;
+  const double sin_swing_a1 = -2.0*softkin_root(sine_square_a1)*sign_elbow/divisor_of_cos_a1;
   const double sin_a1 = (span_upper_x*cos_swing_a1 + span_upper_y*sin_swing_a1)/divisor_a1;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a1 = (span_upper_y*cos_swing_a1 - span_upper_x*sin_swing_a1)/divisor_a1;
@@ -243,11 +243,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
-  const double along_a2 = (k->link_length_2*span_rear_x - k->product_in_branch_w*sin_a1)
+  const double along_a2 = (k->link_length_2*span_rear_x - k->product_in_branch_crank*sin_a1)
       *k->one_by_link_length_2;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
   const double across_a2 = k->one_by_link_length_2
-      *(k->product_in_branch_w*cos_a1 - k->link_length_2*span_rear_y);
+      *(k->product_in_branch_crank*cos_a1 - k->link_length_2*span_rear_y);
   /* effective length of the arm that a2 turns */
   const double effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2);
   /* a2: its effective length is too short */
@@ -273,10 +273,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   }
   const double rod_1_x = x - centre_1_x;
   const double rod_1_y = y - centre_1_y;
-  const double sign_w = sigma_w; /* w: +1 left, -1 right */
+  const double sign_crank = sigma_crank; /* crank: +1 left, -1 right */
   /* sine squared, times the squared scale */
   const double sine_square_a2 = one_less_cos_a2*one_plus_cos_a2;
-  const double sin_swing_a2 = -2.0*softkin_root(sine_square_a2)*sign_w/divisor_of_cos_a2;
+  const double sin_swing_a2 = -2.0*softkin_root(sine_square_a2)*sign_crank/divisor_of_cos_a2;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
   const double cos_a2 = (along_a2*cos_swing_a2 - across_a2*sin_swing_a2)/effective_a2;
   /* rod rear: centre about which it swings */
@@ -433,9 +433,9 @@ static softkin_status find_singularity(const void *machine, const double *axes, 
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
-  const double margin_stretched_2 = k->quotient_in_branch_w
-      *((k->product_in_branch_w*cos_a1 - k->link_length_2*span_rear_y)*cos_a2
-      + (k->product_in_branch_w*sin_a1 - k->link_length_2*span_rear_x)*sin_a2);
+  const double margin_stretched_2 = k->quotient_in_branch_crank
+      *((k->product_in_branch_crank*cos_a1 - k->link_length_2*span_rear_y)*cos_a2
+      + (k->product_in_branch_crank*sin_a1 - k->link_length_2*span_rear_x)*sin_a2);
   const double rod_1_x = x - centre_1_x;
   const double rod_1_y = y - centre_1_y;
   const double rod_2_x = x - centre_2_x;
@@ -627,12 +627,12 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   /* rod rear: known part of its vector */
   const double span_rear_x = -k->link_length_3_by_link_length_2*span_upper_x;
   const double link_length_2_times_span_rear_x = k->link_length_2*span_rear_x;
-  const double along_a2_left = (link_length_2_times_span_rear_x - k->product_in_branch_w*sin_a1_left)
+  const double along_a2_left = (link_length_2_times_span_rear_x - k->product_in_branch_crank*sin_a1_left)
       *k->one_by_link_length_2;
   const double span_rear_y = -k->link_length_3_by_link_length_2*span_upper_y;
   const double link_length_2_times_span_rear_y = k->link_length_2*span_rear_y;
   const double across_a2_left = k->one_by_link_length_2
-      *(k->product_in_branch_w*cos_a1_left - link_length_2_times_span_rear_y);
+      *(k->product_in_branch_crank*cos_a1_left - link_length_2_times_span_rear_y);
   /* effective length of the arm that a2 turns */
   const double effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left);
   const double divisor_a2_left = effective_a2_left > k->link_length_5_times_shortest_link ? effective_a2_left
@@ -712,10 +712,10 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
       + softkin_angle_of(sin_a2_left_left, cos_a2_left_left)*SOFTKIN_RADIAN;
   const double axis_a2_left_right = k->offset_a2
       + softkin_angle_of(sin_a2_left_right, cos_a2_left_right)*SOFTKIN_RADIAN;
-  const double along_a2_right = (link_length_2_times_span_rear_x - k->product_in_branch_w*sin_a1_right)
+  const double along_a2_right = (link_length_2_times_span_rear_x - k->product_in_branch_crank*sin_a1_right)
       *k->one_by_link_length_2;
   const double across_a2_right = k->one_by_link_length_2
-      *(k->product_in_branch_w*cos_a1_right - link_length_2_times_span_rear_y);
+      *(k->product_in_branch_crank*cos_a1_right - link_length_2_times_span_rear_y);
   /* effective length of the arm that a2 turns */
   const double effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right);
   const double divisor_a2_right = effective_a2_right > k->link_length_5_times_shortest_link
@@ -863,8 +863,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_squared_times_free_angle = 2e-12*machine_scale*machine_scale;
   const double link_length_2_by_link_length_3 = p->link_length_2/p->link_length_3;
   const double one_by_link_length_2 = 1.0/p->link_length_2;
-  const double product_in_branch_w = p->link_length_1*(p->link_length_2 + p->link_length_3);
-  const double quotient_in_branch_w = 1.0/(p->link_length_2*p->link_length_4);
+  const double product_in_branch_crank = p->link_length_1*(p->link_length_2 + p->link_length_3);
+  const double quotient_in_branch_crank = 1.0/(p->link_length_2*p->link_length_4);
   const double sum_in_pivot_rear_x = p->link_length_1 + p->link_length_1*p->link_length_3/p->link_length_2;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double link_length_4_plus_link_length_5 = p->link_length_4 + p->link_length_5;
@@ -908,8 +908,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle;
   made.link_length_2_by_link_length_3 = link_length_2_by_link_length_3;
   made.one_by_link_length_2 = one_by_link_length_2;
-  made.product_in_branch_w = product_in_branch_w;
-  made.quotient_in_branch_w = quotient_in_branch_w;
+  made.product_in_branch_crank = product_in_branch_crank;
+  made.quotient_in_branch_crank = quotient_in_branch_crank;
   made.sum_in_pivot_rear_x = sum_in_pivot_rear_x;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5;

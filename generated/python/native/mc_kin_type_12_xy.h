@@ -5,10 +5,14 @@
  *
  * A1 (rotary, deg): Upper arm; positive clockwise, zero along -Y
  * A2 (rotary, deg): Crank; positive clockwise, zero along -X
- * t: 1 = left, 2 = right, 0 = automatic, 3 = both meet
- * w: 1 = left, 2 = right, 0 = automatic, 3 = both meet
- * configuration: t, w, turn of A1, turn of A2
+ * elbow: 1 = left, 2 = right, 0 = automatic, 3 = both meet
+ * crank: 1 = left, 2 = right, 0 = automatic, 3 = both meet
+ * configuration: elbow, crank, turn of A1, turn of A2
  * rows of the Jacobian: x, y
+ *
+ * elbow: on which side of the line from the TCP to the origin T is, the end of the upper arm, seen
+ * along this line. crank: on which side of the line from E to the origin W is, the end of the crank.
+ * In the mirrored reading left and right are exchanged.
  *
  * Lengths and linear axes are in the user's unit (u), rotary axes in degrees. softkin.h documents each call
  * and
@@ -82,10 +86,10 @@ typedef struct {
       link_length_1_minus_link_length_2, link_length_5_times_shortest_link,
       link_length_4_minus_link_length_5, link_length_3_by_link_length_2,
       machine_scale_squared_times_free_angle, link_length_2_by_link_length_3, one_by_link_length_2,
-      product_in_branch_w, quotient_in_branch_w, sum_in_pivot_rear_x, link_length_1_plus_link_length_2,
-      link_length_4_plus_link_length_5, quotient_in_type2_arms_aligned, quotient_in_margin_arms_aligned,
-      twice_link_length_1, product_in_slope_2_by_x, link_length_3_times_2_by_link_length_2,
-      product_in_slope_2_by_a1, twice_link_length_5;
+      product_in_branch_crank, quotient_in_branch_crank, sum_in_pivot_rear_x,
+      link_length_1_plus_link_length_2, link_length_4_plus_link_length_5, quotient_in_type2_arms_aligned,
+      quotient_in_margin_arms_aligned, twice_link_length_1, product_in_slope_2_by_x,
+      link_length_3_times_2_by_link_length_2, product_in_slope_2_by_a1, twice_link_length_5;
   bool single_a1, single_a2, swap_xy;
 } mc_kin_type_12_xy_machine;
 

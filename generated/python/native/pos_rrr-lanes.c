@@ -15,7 +15,7 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
       effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
       offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
@@ -48,13 +48,12 @@ void pos_rrr_regular(const void *machine, const softkin_lanes *given,
     const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
     missed += sum_q3 > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3;
-    const bool within_19 = fabs(cos_swing_q3) <= 1.0;
-    const bool lost_digits_19 = (!within_19) && (fabs(ahead_q1) <= product_in_lost_digits_19);
+    const bool lost_digits_q3 = (fabs(ahead_q1) <= product_in_lost_digits_q3) && (fabs(cos_swing_q3) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_19 ? 0.0 : 1.0;
+    missed += !lost_digits_q3 ? 0.0 : 1.0;
     /* q3: out of reach */
     missed += fabs(cos_swing_q3) <= 1.0000000000005 ? 0.0 : 1.0;
-    missed += reach > product_in_lost_digits_19 ? 0.0 : 1.0;
+    missed += reach > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
@@ -97,7 +96,7 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
       effective_q3_2 = k->effective_q3_2, machine_scale_times_free_angle = k->machine_scale_times_free_angle,
       mid_a1 = k->mid_a1, mid_a2 = k->mid_a2, mid_a3 = k->mid_a3, offset_a1 = k->offset_a1,
       offset_a2 = k->offset_a2, offset_a3 = k->offset_a3,
-      product_in_lost_digits_19 = k->product_in_lost_digits_19, rounding_q1 = k->rounding_q1,
+      product_in_lost_digits_q3 = k->product_in_lost_digits_q3, rounding_q1 = k->rounding_q1,
       single_a1 = k->single_a1 ? 1.0 : 0.0, single_a2 = k->single_a2 ? 1.0 : 0.0,
       single_a3 = k->single_a3 ? 1.0 : 0.0;
   const double angle_in_angle_q3_front_down = softkin_lane_angle(d4/effective_q3_2, a3/effective_q3_2);
@@ -135,11 +134,10 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
     missed += sum_q3_front > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front;
-    const bool within_19_front = fabs(cos_swing_q3_front) <= 1.0;
-    const bool lost_digits_19_front = (!within_19_front)
-        && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
+    const bool lost_digits_q3_front = (fabs(ahead_q1_front) <= product_in_lost_digits_q3)
+        && (fabs(cos_swing_q3_front) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_19_front ? 0.0 : 1.0;
+    missed += !lost_digits_q3_front ? 0.0 : 1.0;
     /* coordinate of the point that the remaining links must reach */
     const double wrist_x_from_q1_back = -a1 - ahead_q1_front;
     /* distance that the remaining links must span */
@@ -155,14 +153,14 @@ void pos_rrr_regular_all(const void *machine, const softkin_lanes *given,
     const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
     missed += sum_q3_back > 0.0 ? 0.0 : 1.0;
     const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back;
-    const bool within_19_back = fabs(cos_swing_q3_back) <= 1.0;
-    const bool lost_digits_19_back = (!within_19_back) && (fabs(ahead_q1_front) <= product_in_lost_digits_19);
+    const bool lost_digits_q3_back = (fabs(ahead_q1_front) <= product_in_lost_digits_q3)
+        && (fabs(cos_swing_q3_back) > 1.0);
     /* digits may be lost */
-    missed += !lost_digits_19_back ? 0.0 : 1.0;
-    missed += reach_front > product_in_lost_digits_19 ? 0.0 : 1.0;
+    missed += !lost_digits_q3_back ? 0.0 : 1.0;
+    missed += reach_front > product_in_lost_digits_q3 ? 0.0 : 1.0;
     /* digits may be lost */
     missed += true ? 0.0 : 1.0;
-    missed += reach_back > product_in_lost_digits_19 ? 0.0 : 1.0;
+    missed += reach_back > product_in_lost_digits_q3 ? 0.0 : 1.0;
     missed += distance_q1 > machine_scale_times_free_angle ? 0.0 : 1.0;
     /* sine squared, times the squared scale */
     const double sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front;

@@ -410,10 +410,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sum_q3 = one_less_cos_q3 + one_plus_cos_q3;
   const double divisor_of_cos_q3 = sum_q3 > 0.0 ? sum_q3 : 1.0;
   const double cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3;
-  const bool within_19 = fabs(cos_swing_q3) <= 1.0;
-  const bool lost_digits_19 = (!within_19) && (fabs(ahead_q1) <= k->product_in_lost_digits_19);
+  const bool lost_digits_q3 = (fabs(ahead_q1) <= k->product_in_lost_digits_q3) && (fabs(cos_swing_q3) > 1.0);
   /* q3: out of reach */
-  if (!(lost_digits_19 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
+  if (!(lost_digits_q3 || (fabs(cos_swing_q3) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
@@ -424,11 +423,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double sin_swing_q3 = -2.0*softkin_root(sine_square_q3)*sign_elbow/divisor_of_cos_q3;
   const double arm_along_q2 = -k->effective_q3_2*sin_swing_q3;
   const double arm_across_q2 = k->a2 + k->effective_q3_2*cos_swing_q3;
-  const double away_q2 = reach > k->product_in_lost_digits_19 ? 0.0
+  const double length_difference_q2 = reach > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2*arm_across_q2 + arm_along_q2*arm_along_q2 - reach*reach)*k->one_by_machine_scale
-      /(k->product_in_away_q2 + reach);
-  const bool within_32 = away_q2 <= 1e-12;
-  const bool lost_digits_lengths_32 = !within_32;
+      /(k->product_in_length_difference_q2 + reach);
+  const bool lost_digits_q2 = length_difference_q2 > 1e-12;
   double cos_q1, sin_q1;
   if (distance_q1 > k->machine_scale_times_free_angle) {
     /* rotation by q1 that points the arm at the point; at a singularity: the angle of the reference */
@@ -475,7 +473,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       near_a3);
   /* if digits were lost, steps on the closure meet the pose */
   double results[4] = {0.0};
-  if (lost_digits_19 || lost_digits_lengths_32) {
+  if (lost_digits_q2 || lost_digits_q3) {
     const double arguments[] = {ref_a1, ref_a2, ref_a3, sigma_arm, sigma_elbow, turn_a1, turn_a2, turn_a3, x,
         y, z, axis_a1, axis_a2, axis_a3};
     const softkin_status status = find_meet_pose(k, arguments, results, why);
@@ -486,7 +484,7 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double found_a1 = results[1], found_a2 = results[2], found_a3 = results[3];
   const bool met = results[0] != 0.0;
   /* q3: out of reach */
-  if (!((met || (away_q2 <= 1e-11)) && (met || (fabs(cos_swing_q3) <= 1.0000000000005)))) {
+  if (!((met || (length_difference_q2 <= 1e-11)) && (met || (fabs(cos_swing_q3) <= 1.0000000000005)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
         (reach - k->a2_plus_effective_q3_2 > fabs(k->a2_minus_effective_q3_2) - reach ? reach
         - k->a2_plus_effective_q3_2 : fabs(k->a2_minus_effective_q3_2) - reach), 0);
@@ -695,10 +693,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sum_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front;
   const double divisor_of_cos_q3_front = sum_q3_front > 0.0 ? sum_q3_front : 1.0;
   const double cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front;
-  const bool within_19_front = fabs(cos_swing_q3_front) <= 1.0;
-  const bool lost_digits_19_front = (!within_19_front)
-      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_19);
-  if (!(!lost_digits_19_front)) {
+  const bool lost_digits_q3_front = (fabs(ahead_q1_front) <= k->product_in_lost_digits_q3)
+      && (fabs(cos_swing_q3_front) > 1.0);
+  if (!(!lost_digits_q3_front)) {
     return false;
   }
   /* coordinate of the point that the remaining links must reach */
@@ -715,10 +712,9 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sum_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back;
   const double divisor_of_cos_q3_back = sum_q3_back > 0.0 ? sum_q3_back : 1.0;
   const double cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back;
-  const bool within_19_back = fabs(cos_swing_q3_back) <= 1.0;
-  const bool lost_digits_19_back = (!within_19_back)
-      && (fabs(ahead_q1_front) <= k->product_in_lost_digits_19);
-  if (!(!lost_digits_19_back)) {
+  const bool lost_digits_q3_back = (fabs(ahead_q1_front) <= k->product_in_lost_digits_q3)
+      && (fabs(cos_swing_q3_back) > 1.0);
+  if (!(!lost_digits_q3_back)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -726,12 +722,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_swing_q3_front_up = 2.0*softkin_root(sine_square_q3_front)/divisor_of_cos_q3_front;
   const double arm_along_q2_front_down = k->effective_q3_2*sin_swing_q3_front_up;
   const double arm_across_q2_front = k->a2 + k->effective_q3_2*cos_swing_q3_front;
-  const double away_q2_front_down = reach_front > k->product_in_lost_digits_19 ? 0.0
+  const double length_difference_q2_front_down = reach_front > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_front*arm_across_q2_front + arm_along_q2_front_down*arm_along_q2_front_down
-      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_front);
-  const bool within_32_front_down = away_q2_front_down <= 1e-12;
-  const bool lost_digits_lengths_32_front_down = !within_32_front_down;
-  if (!(!lost_digits_lengths_32_front_down)) {
+      - reach_front*reach_front)*k->one_by_machine_scale/(k->product_in_length_difference_q2 + reach_front);
+  const bool lost_digits_q2_front_down = length_difference_q2_front_down > 1e-12;
+  if (!(!lost_digits_q2_front_down)) {
     return false;
   }
   /* sine squared, times the squared scale */
@@ -739,12 +734,11 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double sin_swing_q3_back_up = 2.0*softkin_root(sine_square_q3_back)/divisor_of_cos_q3_back;
   const double arm_along_q2_back_down = k->effective_q3_2*sin_swing_q3_back_up;
   const double arm_across_q2_back = k->a2 + k->effective_q3_2*cos_swing_q3_back;
-  const double away_q2_back_down = reach_back > k->product_in_lost_digits_19 ? 0.0
+  const double length_difference_q2_back_down = reach_back > k->product_in_lost_digits_q3 ? 0.0
       : fabs(arm_across_q2_back*arm_across_q2_back + arm_along_q2_back_down*arm_along_q2_back_down
-      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_away_q2 + reach_back);
-  const bool within_32_back_down = away_q2_back_down <= 1e-12;
-  const bool lost_digits_lengths_32_back_down = !within_32_back_down;
-  if (!(!lost_digits_lengths_32_back_down)) {
+      - reach_back*reach_back)*k->one_by_machine_scale/(k->product_in_length_difference_q2 + reach_back);
+  const bool lost_digits_q2_back_down = length_difference_q2_back_down > 1e-12;
+  if (!(!lost_digits_q2_back_down)) {
     return false;
   }
   /* q3: out of reach */
@@ -873,9 +867,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double effective_q3_2 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   /* rounding error of a squared length */
   const double rounding_q1 = 1e-24*machine_scale*machine_scale;
-  const double product_in_lost_digits_19 = 0.01*machine_scale;
+  const double product_in_lost_digits_q3 = 0.01*machine_scale;
   const double a2_minus_effective_q3_2 = p->a2 - effective_q3_2;
-  const double product_in_away_q2 = 1e-11*machine_scale;
+  const double product_in_length_difference_q2 = 1e-11*machine_scale;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double one_by_effective_q3_2 = 1.0/effective_q3_2;
@@ -906,9 +900,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale = machine_scale;
   made.effective_q3_2 = effective_q3_2;
   made.rounding_q1 = rounding_q1;
-  made.product_in_lost_digits_19 = product_in_lost_digits_19;
+  made.product_in_lost_digits_q3 = product_in_lost_digits_q3;
   made.a2_minus_effective_q3_2 = a2_minus_effective_q3_2;
-  made.product_in_away_q2 = product_in_away_q2;
+  made.product_in_length_difference_q2 = product_in_length_difference_q2;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.one_by_effective_q3_2 = one_by_effective_q3_2;

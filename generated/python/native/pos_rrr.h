@@ -79,9 +79,9 @@ typedef struct {
   softkin_ends ends[POS_RRR_LIMITS];
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3, d1, a1,
       a2, d3, a3, d4, offset_a1, offset_a2, offset_a3, machine_scale, effective_q3_2, rounding_q1,
-      product_in_lost_digits_19, a2_minus_effective_q3_2, product_in_away_q2, machine_scale_times_free_angle,
-      one_by_machine_scale, one_by_effective_q3_2, a2_plus_effective_q3_2, d4_by_effective_q3_2,
-      a3_by_effective_q3_2;
+      product_in_lost_digits_q3, a2_minus_effective_q3_2, product_in_length_difference_q2,
+      machine_scale_times_free_angle, one_by_machine_scale, one_by_effective_q3_2, a2_plus_effective_q3_2,
+      d4_by_effective_q3_2, a3_by_effective_q3_2;
   bool single_a1, single_a2, single_a3;
 } pos_rrr_machine;
 

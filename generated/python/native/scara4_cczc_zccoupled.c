@@ -60,16 +60,16 @@ static const softkin_parameter PARAMETERS[] = {
       false, 1, 0.0, 0.0, "upper_a3 must be at least -1e+09 and at most 1e+09 (A3: upper limit of the axis,"
       " both 0: no limit)", offsetof(scara4_cczc_zccoupled_parameters, upper_a3)},
   {"lower_a4", "angle", "deg",
-      "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -720.0,
-      720.0, false, false, false, -1, 0.0, 0.0,
-      "lower_a4 must be at least -720 and at most 720 (A4: lower limit of the axis, "
-      "both 0: no limit, but -720 .. 720 while it has a pitch)",
+      "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -1e9, 1e9,
+      false, false, false, -1, 0.0, 0.0,
+      "lower_a4 must be at least -1e+09 and at most 1e+09 (A4: lower limit of the axis,"
+      " both 0: no limit, but -720 .. 720 while it has a pitch)",
       offsetof(scara4_cczc_zccoupled_parameters, lower_a4)},
   {"upper_a4", "angle", "deg",
-      "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -720.0,
-      720.0, false, false, false, 1, 0.0, 0.0,
-      "upper_a4 must be at least -720 and at most 720 (A4: upper limit of the axis, "
-      "both 0: no limit, but -720 .. 720 while it has a pitch)",
+      "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -1e9, 1e9,
+      false, false, false, 1, 0.0, 0.0,
+      "upper_a4 must be at least -1e+09 and at most 1e+09 (A4: upper limit of the axis,"
+      " both 0: no limit, but -720 .. 720 while it has a pitch)",
       offsetof(scara4_cczc_zccoupled_parameters, upper_a4)},
   {"check_limits", "flag", "", "inverse kinematics tests the limits", 0.0, 1.0, false, false, true, 0, 1.0,
       1.0, "check_limits must be 0 or 1 (inverse kinematics tests the limits)",

@@ -72,11 +72,11 @@ typedef struct {
   double lower_a3;
   /** A3: upper limit of the axis, both 0: no limit [u]: at least -1e+09 and at most 1e+09; default 0 */
   double upper_a3;
-  /** A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least -720
-   * and at most 720; default 0 */
+  /** A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least
+   * -1e+09 and at most 1e+09; default 0 */
   double lower_a4;
-  /** A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least -720
-   * and at most 720; default 0 */
+  /** A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least
+   * -1e+09 and at most 1e+09; default 0 */
   double upper_a4;
   /** inverse kinematics tests the limits: 0 or 1; default 1 */
   double check_limits;

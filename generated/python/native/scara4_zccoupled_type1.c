@@ -11,58 +11,57 @@ static const softkin_axis AXES[] = {
 };
 
 static const softkin_parameter PARAMETERS[] = {
-  {"link_length_1", "length", "u", "Length of link 1, axis A1 to axis A2", 1e-12, 800.0, true, false, false,
-      0, NAN, 325.0, "link_length_1 must be more than 1e-12 and at most 800 (Length of link 1, axis A1"
-      " to axis A2)", offsetof(scara4_zccoupled_type1_parameters, link_length_1)},
-  {"link_length_2", "length", "u", "Length of link 2, axis A2 to axis A4", 1e-12, 800.0, true, false, false,
-      0, NAN, 225.0, "link_length_2 must be more than 1e-12 and at most 800 (Length of link 2, axis A2"
-      " to axis A4)", offsetof(scara4_zccoupled_type1_parameters, link_length_2)},
-  {"pitch_zc", "pitch", "u/rev", "Travel of the quill per clockwise turn of A4, downward negative", -200.0,
-      200.0, false, false, false, 0, 0.0, 20.0,
-      "pitch_zc must be at least -200 and at most 200 (Travel of the quill per "
+  {"link_length_1", "length", "u", "Length of link 1, axis A1 to axis A2", 1e-12, 1e9, true, false, false, 0,
+      NAN, 325.0, "link_length_1 must be more than 1e-12 and at most 1e+09 (Length of link 1, axis "
+      "A1 to axis A2)", offsetof(scara4_zccoupled_type1_parameters, link_length_1)},
+  {"link_length_2", "length", "u", "Length of link 2, axis A2 to axis A4", 1e-12, 1e9, true, false, false, 0,
+      NAN, 225.0, "link_length_2 must be more than 1e-12 and at most 1e+09 (Length of link 2, axis "
+      "A2 to axis A4)", offsetof(scara4_zccoupled_type1_parameters, link_length_2)},
+  {"pitch_zc", "pitch", "u/rev", "Travel of the quill per clockwise turn of A4, downward negative", -1e9,
+      1e9, false, false, false, 0, 0.0, 20.0,
+      "pitch_zc must be at least -1e+09 and at most 1e+09 (Travel of the quill per "
       "clockwise turn of A4, downward negative)", offsetof(scara4_zccoupled_type1_parameters, pitch_zc)},
-  {"offset_a1", "angle", "deg", "A1: axis value at the kinematic zero position", -360.0, 360.0, false, false,
-      false, 0, 0.0, 0.0, "offset_a1 must be at least -360 and at most 360 (A1: axis value at the kinematic"
-      " zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a1)},
-  {"offset_a2", "angle", "deg", "A2: axis value at the kinematic zero position", -360.0, 360.0, false, false,
-      false, 0, 0.0, 0.0, "offset_a2 must be at least -360 and at most 360 (A2: axis value at the kinematic"
-      " zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a2)},
-  {"offset_a3", "distance", "u", "A3: axis value at the kinematic zero position", -400.0, 400.0, false,
-      false, false, 0, 0.0, 0.0,
-      "offset_a3 must be at least -400 and at most 400 (A3: axis value at the kinematic" " zero position)",
-      offsetof(scara4_zccoupled_type1_parameters, offset_a3)},
-  {"offset_a4", "angle", "deg", "A4: axis value at the kinematic zero position", -720.0, 720.0, false, false,
-      false, 0, 0.0, 0.0, "offset_a4 must be at least -720 and at most 720 (A4: axis value at the kinematic"
-      " zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a4)},
-  {"lower_a1", "angle", "deg", "A1: lower limit of the axis, both 0: no limit", -360.0, 360.0, false, false,
-      false, -1, 0.0, 0.0, "lower_a1 must be at least -360 and at most 360 (A1: lower limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a1)},
-  {"upper_a1", "angle", "deg", "A1: upper limit of the axis, both 0: no limit", -360.0, 360.0, false, false,
-      false, 1, 0.0, 0.0, "upper_a1 must be at least -360 and at most 360 (A1: upper limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a1)},
-  {"lower_a2", "angle", "deg", "A2: lower limit of the axis, both 0: no limit", -360.0, 360.0, false, false,
-      false, -1, 0.0, 0.0, "lower_a2 must be at least -360 and at most 360 (A2: lower limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a2)},
-  {"upper_a2", "angle", "deg", "A2: upper limit of the axis, both 0: no limit", -360.0, 360.0, false, false,
-      false, 1, 0.0, 0.0, "upper_a2 must be at least -360 and at most 360 (A2: upper limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a2)},
-  {"lower_a3", "distance", "u", "A3: lower limit of the axis, both 0: no limit", -400.0, 400.0, false, false,
-      false, -1, 0.0, 0.0, "lower_a3 must be at least -400 and at most 400 (A3: lower limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a3)},
-  {"upper_a3", "distance", "u", "A3: upper limit of the axis, both 0: no limit", -400.0, 400.0, false, false,
-      false, 1, 0.0, 0.0, "upper_a3 must be at least -400 and at most 400 (A3: upper limit of the axis, "
-      "both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a3)},
+  {"offset_a1", "angle", "deg", "A1: axis value at the kinematic zero position", -1e9, 1e9, false, false,
+      false, 0, 0.0, 0.0, "offset_a1 must be at least -1e+09 and at most 1e+09 (A1: axis value at the "
+      "kinematic zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a1)},
+  {"offset_a2", "angle", "deg", "A2: axis value at the kinematic zero position", -1e9, 1e9, false, false,
+      false, 0, 0.0, 0.0, "offset_a2 must be at least -1e+09 and at most 1e+09 (A2: axis value at the "
+      "kinematic zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a2)},
+  {"offset_a3", "distance", "u", "A3: axis value at the kinematic zero position", -1e9, 1e9, false, false,
+      false, 0, 0.0, 0.0, "offset_a3 must be at least -1e+09 and at most 1e+09 (A3: axis value at the "
+      "kinematic zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a3)},
+  {"offset_a4", "angle", "deg", "A4: axis value at the kinematic zero position", -1e9, 1e9, false, false,
+      false, 0, 0.0, 0.0, "offset_a4 must be at least -1e+09 and at most 1e+09 (A4: axis value at the "
+      "kinematic zero position)", offsetof(scara4_zccoupled_type1_parameters, offset_a4)},
+  {"lower_a1", "angle", "deg", "A1: lower limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, -1, 0.0, 0.0, "lower_a1 must be at least -1e+09 and at most 1e+09 (A1: lower limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a1)},
+  {"upper_a1", "angle", "deg", "A1: upper limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, 1, 0.0, 0.0, "upper_a1 must be at least -1e+09 and at most 1e+09 (A1: upper limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a1)},
+  {"lower_a2", "angle", "deg", "A2: lower limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, -1, 0.0, 0.0, "lower_a2 must be at least -1e+09 and at most 1e+09 (A2: lower limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a2)},
+  {"upper_a2", "angle", "deg", "A2: upper limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, 1, 0.0, 0.0, "upper_a2 must be at least -1e+09 and at most 1e+09 (A2: upper limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a2)},
+  {"lower_a3", "distance", "u", "A3: lower limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, -1, 0.0, 0.0, "lower_a3 must be at least -1e+09 and at most 1e+09 (A3: lower limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, lower_a3)},
+  {"upper_a3", "distance", "u", "A3: upper limit of the axis, both 0: no limit", -1e9, 1e9, false, false,
+      false, 1, 0.0, 0.0, "upper_a3 must be at least -1e+09 and at most 1e+09 (A3: upper limit of the axis,"
+      " both 0: no limit)", offsetof(scara4_zccoupled_type1_parameters, upper_a3)},
   {"lower_a4", "angle", "deg",
-      "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -720.0,
-      720.0, false, false, false, -1, 0.0, 0.0,
-      "lower_a4 must be at least -720 and at most 720 (A4: lower limit of the axis, "
-      "both 0: no limit, but -720 .. 720 while it has a pitch)",
+      "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -1e9, 1e9,
+      false, false, false, -1, 0.0, 0.0,
+      "lower_a4 must be at least -1e+09 and at most 1e+09 (A4: lower limit of the axis,"
+      " both 0: no limit, but -720 .. 720 while it has a pitch)",
       offsetof(scara4_zccoupled_type1_parameters, lower_a4)},
   {"upper_a4", "angle", "deg",
-      "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -720.0,
-      720.0, false, false, false, 1, 0.0, 0.0,
-      "upper_a4 must be at least -720 and at most 720 (A4: upper limit of the axis, "
-      "both 0: no limit, but -720 .. 720 while it has a pitch)",
+      "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a " "pitch", -1e9, 1e9,
+      false, false, false, 1, 0.0, 0.0,
+      "upper_a4 must be at least -1e+09 and at most 1e+09 (A4: upper limit of the axis,"
+      " both 0: no limit, but -720 .. 720 while it has a pitch)",
       offsetof(scara4_zccoupled_type1_parameters, upper_a4)},
   {"check_limits", "flag", "", "inverse kinematics tests the limits", 0.0, 1.0, false, false, true, 0, 1.0,
       1.0, "check_limits must be 0 or 1 (inverse kinematics tests the limits)",

@@ -35,38 +35,38 @@ extern "C" {
 
 /** The parameters. Those that have a default get it by `scara4_zccoupled_type1_defaults`, the others NaN. */
 typedef struct {
-  /** Length of link 1, axis A1 to axis A2 [u]: more than 1e-12 and at most 800; must be given */
+  /** Length of link 1, axis A1 to axis A2 [u]: more than 1e-12 and at most 1e+09; must be given */
   double link_length_1;
-  /** Length of link 2, axis A2 to axis A4 [u]: more than 1e-12 and at most 800; must be given */
+  /** Length of link 2, axis A2 to axis A4 [u]: more than 1e-12 and at most 1e+09; must be given */
   double link_length_2;
-  /** Travel of the quill per clockwise turn of A4, downward negative [u/rev]: at least -200 and at most 200;
-   * default 0 */
+  /** Travel of the quill per clockwise turn of A4, downward negative [u/rev]: at least -1e+09 and at most
+   * 1e+09; default 0 */
   double pitch_zc;
-  /** A1: axis value at the kinematic zero position [deg]: at least -360 and at most 360; default 0 */
+  /** A1: axis value at the kinematic zero position [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a1;
-  /** A2: axis value at the kinematic zero position [deg]: at least -360 and at most 360; default 0 */
+  /** A2: axis value at the kinematic zero position [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a2;
-  /** A3: axis value at the kinematic zero position [u]: at least -400 and at most 400; default 0 */
+  /** A3: axis value at the kinematic zero position [u]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a3;
-  /** A4: axis value at the kinematic zero position [deg]: at least -720 and at most 720; default 0 */
+  /** A4: axis value at the kinematic zero position [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double offset_a4;
-  /** A1: lower limit of the axis, both 0: no limit [deg]: at least -360 and at most 360; default 0 */
+  /** A1: lower limit of the axis, both 0: no limit [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double lower_a1;
-  /** A1: upper limit of the axis, both 0: no limit [deg]: at least -360 and at most 360; default 0 */
+  /** A1: upper limit of the axis, both 0: no limit [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double upper_a1;
-  /** A2: lower limit of the axis, both 0: no limit [deg]: at least -360 and at most 360; default 0 */
+  /** A2: lower limit of the axis, both 0: no limit [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double lower_a2;
-  /** A2: upper limit of the axis, both 0: no limit [deg]: at least -360 and at most 360; default 0 */
+  /** A2: upper limit of the axis, both 0: no limit [deg]: at least -1e+09 and at most 1e+09; default 0 */
   double upper_a2;
-  /** A3: lower limit of the axis, both 0: no limit [u]: at least -400 and at most 400; default 0 */
+  /** A3: lower limit of the axis, both 0: no limit [u]: at least -1e+09 and at most 1e+09; default 0 */
   double lower_a3;
-  /** A3: upper limit of the axis, both 0: no limit [u]: at least -400 and at most 400; default 0 */
+  /** A3: upper limit of the axis, both 0: no limit [u]: at least -1e+09 and at most 1e+09; default 0 */
   double upper_a3;
-  /** A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least -720
-   * and at most 720; default 0 */
+  /** A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least
+   * -1e+09 and at most 1e+09; default 0 */
   double lower_a4;
-  /** A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least -720
-   * and at most 720; default 0 */
+  /** A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]: at least
+   * -1e+09 and at most 1e+09; default 0 */
   double upper_a4;
   /** inverse kinematics tests the limits: 0 or 1; default 1 */
   double check_limits;

@@ -49,7 +49,9 @@ if TYPE_CHECKING:
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
     from softkin.gantrycutter3 import GantryCutter3
+    from softkin.headhead_ca import HeadHeadCA
     from softkin.headhead_cb import HeadHeadCB
+    from softkin.headtable_ac import HeadTableAC
     from softkin.headtable_bc import HeadTableBC
     from softkin.hexaglide import Hexaglide
     from softkin.hexapod import Hexapod
@@ -57,6 +59,8 @@ if TYPE_CHECKING:
     from softkin.hgantry3 import HGantry3
     from softkin.kin_5axes import Kin5Axes
     from softkin.mc_kin_type_12_xy import KinType12XY
+    from softkin.nutatinghead_cb import NutatingHeadCB
+    from softkin.nutatingtable_bc import NutatingTableBC
     from softkin.p2c_type1 import P2CType1
     from softkin.p2c_type2 import P2CType2
     from softkin.p2x_type1 import P2XType1
@@ -78,9 +82,11 @@ if TYPE_CHECKING:
     from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
     from softkin.tabletable_ac import TableTableAC
+    from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
     from softkin.tool import Tool
+    from softkin.transmit import Transmit
     from softkin.tripod_linear import TripodLinear
     from softkin.tripod_p3z import TripodP3Z
     from softkin.tripod_rotary import TripodRotary
@@ -117,7 +123,9 @@ __all__ = [
     "GantryCutter3",
     "HGantry2",
     "HGantry3",
+    "HeadHeadCA",
     "HeadHeadCB",
+    "HeadTableAC",
     "HeadTableBC",
     "Hexaglide",
     "Hexapod",
@@ -126,6 +134,8 @@ __all__ = [
     "KinematicsError",
     "Mechanism",
     "Mounted",
+    "NutatingHeadCB",
+    "NutatingTableBC",
     "OrientationImage",
     "P2CType1",
     "P2CType2",
@@ -152,7 +162,9 @@ __all__ = [
     "TGantry2",
     "TGantry3",
     "TableTableAC",
+    "TableTableBC",
     "Tool",
+    "Transmit",
     "TripodLinear",
     "TripodP3Z",
     "TripodRotary",
@@ -185,7 +197,9 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
     "Kin_GantryCutter3": ("gantrycutter3", "GantryCutter3"),
+    "Softkin_HeadHead_CA": ("headhead_ca", "HeadHeadCA"),
     "Softkin_HeadHead_CB": ("headhead_cb", "HeadHeadCB"),
+    "Softkin_HeadTable_AC": ("headtable_ac", "HeadTableAC"),
     "Softkin_HeadTable_BC": ("headtable_bc", "HeadTableBC"),
     "Softkin_Hexaglide": ("hexaglide", "Hexaglide"),
     "Kin_Hexapod": ("hexapod", "Hexapod"),
@@ -193,6 +207,8 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
     "Kin_5Axes": ("kin_5axes", "Kin5Axes"),
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
+    "Softkin_NutatingHead_CB": ("nutatinghead_cb", "NutatingHeadCB"),
+    "Softkin_NutatingTable_BC": ("nutatingtable_bc", "NutatingTableBC"),
     "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
     "Kin_P2C_Type2": ("p2c_type2", "P2CType2"),
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
@@ -214,9 +230,11 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
+    "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
     "Kin_Tool": ("tool", "Tool"),
+    "Softkin_Transmit": ("transmit", "Transmit"),
     "Kin_Tripod_Linear": ("tripod_linear", "TripodLinear"),
     "Kin_Tripod_P3Z": ("tripod_p3z", "TripodP3Z"),
     "Kin_Tripod_Rotary": ("tripod_rotary", "TripodRotary"),

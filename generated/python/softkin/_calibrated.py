@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from softkin._chain import columns, passed, true_chain
 from softkin._configuration import Criterion
 from softkin._core import TWIST, Image, Mechanism, Pose
-from softkin._deviations import checked, units_of
+from softkin._deviations import are_inputs, checked, units_of
 from softkin._ends import Ends
 from softkin._frame import Frame
 from softkin._meeting import Meeting
@@ -263,6 +263,9 @@ def calibrated(robot: Mechanism, deviations: Mapping[str, float]) -> Mechanism:
     if in_degrees is not robot:
         return calibrated(in_degrees, deviations).in_radians()
     nominal, before = (robot.nominal, robot._deviations) if isinstance(robot, Calibrated) else (robot, {})
+    if are_inputs(bare_of(nominal)):
+        checked(bare_of(nominal), deviations)
+        return nominal.changed(**deviations)
     found = checked(bare_of(nominal), {**before, **deviations} if isinstance(deviations, Mapping) else deviations)
     if not found:
         return nominal

@@ -324,6 +324,20 @@ class Mechanism(Value, ABC):
         explained = partial(self._explained, position, rotation, near)
         return Solutions(self._every_branch(position, rotation, near), every, explained)
 
+    def tilted_plane(self, plane: FrameLike, reference: Numbers) -> tuple[Solution, ...]:
+        """The axis values at which the tool of a five-axis machine is along the normal of a plane, in the slots of
+        `inverse_all`: what G53.1 turns to after G68.2.
+
+        plane: a frame in the coordinates of the workpiece, whose z axis is the normal; its position is not used.
+        reference: the present axis values. Sliding axes keep them, and so the tip of the tool moves; a turning axis
+        takes the turn that `inverse` takes, and one that the plane leaves free (tool along the last one) stays. A slot
+        beyond a limit has the reason. Raises BAD_INPUT for what is no frame or reference, IMPOSSIBLE for a
+        machine whose task is no direction, or whose sliding axes turn the tool.
+        """
+        from softkin._tilted import tilted_plane
+
+        return tilted_plane(self, plane, reference)
+
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None if it has no solution.
 
@@ -643,7 +657,8 @@ class Mechanism(Value, ABC):
 
         if self.in_degrees() is not self:
             return self.in_degrees().deviations
-        return dict.fromkeys(_deviations.units_of(self), 0.0)
+        inputs = self.parameters if _deviations.are_inputs(self) else {}
+        return {name: inputs.get(name, 0.0) for name in _deviations.units_of(self)}
 
     def orientation_image(self) -> OrientationImage:
         """The orientations that the flange can have."""

@@ -39,6 +39,11 @@ def units_of(robot: Mechanism) -> dict[str, str]:
     return found | {f"{axis.name.lower()}_gain": "1" for axis in robot.AXES}
 
 
+def are_inputs(robot: Mechanism) -> bool:
+    """Whether a bare machine was derived with its deviations as inputs."""
+    return robot._chain() is not None and units_of(robot).keys() <= {p.name for p in robot.PARAMETERS}
+
+
 def checked(robot: Mechanism, given: Mapping[str, float]) -> dict[str, float]:
     """The deviations that are not zero, in the order of `units_of`.
 

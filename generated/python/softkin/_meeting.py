@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import product as every
-from math import atan2, hypot, pi
+from math import atan2, hypot
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._chain import Chain, Placed, columns, passed
@@ -40,8 +40,8 @@ SIZES = (0.1, 0.5, 2.0, 8.0)
 """Where the nominal machine does not reach a frame: how far it is moved, in shares of the size of the deviations."""
 DIRECTIONS = tuple(d for d in every((0.0, 1.0, -1.0), repeat=3) if any(d))
 """The directions in which it is moved."""
-STRAYED = 8.0
-"""A solution is on another branch where a margin has the other sign and is larger than the deviations times this."""
+STRAYED = 2e-6
+"""A solution is on another branch where a margin has the other sign and is larger than this."""
 NEAR = 0.05
 """A frame is near where it is missed by less, in radians and shares of the reach."""
 FOLDED = (0.02, -0.02, 0.1, -0.1, 0.3, -0.3, 0.8, -0.8, 1.6, -1.6)
@@ -160,16 +160,27 @@ class Meeting:
             if isinstance(axes, Diagnosis):
                 break
             at = self._at(axes, target)
-            least = self._better(least, self._stepped(at, target), signs)
+            least = self._better(least, self._across(self._stepped(at, target), target, signs, turns, reference), signs)
         for second, away in every((False, True), FOLDED):
             if self._is_met(least, signs):
                 return least
-            least = self._better(least, self._stepped(self._aside(least, target, away, second), target), signs)
+            beside = self._stepped(self._aside(least, target, away, second), target)
+            least = self._better(least, self._across(beside, target, signs, turns, reference), signs)
         for axes in self._nearby(SIZES[:2], target, signs, turns, reference):
             if self._is_met(least, signs):
                 return least
             least = self._better(least, self._stepped(self._at(axes, target), target), signs)
         return least if self._is_met(least, signs) else self._refused(least, target)
+
+    def _across(self, at: At, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At:
+        """Where steps lead from the wanted branch, if others have met the frame on another one: the nominal machine is
+        asked for the frame that it has there.
+        """
+        pose = self.machine.nominal._forward(self.machine._actual(at.axes))
+        if at.size > MET or self._is_met(at, signs) or isinstance(pose, Status):
+            return at
+        axes = self._nominal((pose[0], pose[1]), signs, turns, reference)
+        return at if isinstance(axes, Diagnosis) else self._stepped(self._at(axes, target), target)
 
     def _better(self, first: At, second: At, signs: Signs) -> At:
         """The one that meets the frame on the branch, or else misses it less."""
@@ -227,8 +238,7 @@ class Meeting:
     def _turn(self, tool: Placed, target: Placed) -> Vector:
         """The turn that is missing, in the part that the machine follows: its size is the sine where it is small."""
         if self.about is not None:
-            lacks = self._heading(target[1]) - self._heading(tool[1])
-            return times(self.about, (lacks + pi) % (2.0 * pi) - pi)
+            return times(self.about, self._heading(product(target[1], transposed(tool[1]))))
         own, wanted = transposed(tool[1]), transposed(target[1])
         pairs = list(zip(own, wanted, strict=True))
         if TWIST[3] not in self.rows and "roll" not in self.rows:
@@ -236,10 +246,9 @@ class Meeting:
         x, y, z = (cross(*pair) for pair in pairs)
         return times(plus(plus(x, y), z), 0.5)
 
-    def _heading(self, rotation: Rotation) -> float:
+    def _heading(self, turn: Rotation) -> float:
         """The turn of a rotation about the one axis about which the machine follows it."""
         assert self.about is not None
-        turn = product(rotation, transposed(self.home[1]))
         (a, f, e), (c, b, d), (g, h, i) = turn
         sine = dot(self.about, (h - d, e - g, c - f))
         return atan2(sine, a + b + i - dot(self.about, turned(turn, self.about)))
@@ -316,8 +325,7 @@ class Meeting:
         if at.size > MET:
             return False
         pose = self.machine.nominal._forward(self.machine._actual(at.axes))
-        share = STRAYED * self.off
-        return not isinstance(pose, Status) and all(s * m > -share for s, m in zip(signs, pose[2], strict=True))
+        return not isinstance(pose, Status) and all(s * m > -STRAYED for s, m in zip(signs, pose[2], strict=True))
 
     def _moved(self, asked: Placed, target: Placed, at: At) -> Placed:
         """The frame of which the nominal machine is asked, moved by what was missed."""
@@ -333,12 +341,13 @@ class Meeting:
         return place, product(Frame.from_quaternion(quaternion).rotation, asked[1])
 
     def _in_plane(self, at: At, target: Placed) -> Reals | Diagnosis:
-        """The axes, unless a coordinate that no axis moves is asked for elsewhere than it is, or is drawn."""
-        room = MET * self._scale(target)
+        """The axes, unless a coordinate that no axis moves is asked for further from the drawing than deviations of
+        this size put it.
+        """
+        room = 2.0 * self.off * self._scale(target)
         for along in self.fixed:
-            asked, own, drawn = (dot(along, p) for p in (target[0], at.tool[0], self.home[0]))
-            beyond = max(min(own, drawn) - asked, asked - max(own, drawn))
-            if beyond > room:
+            beyond = abs(dot(along, plus(target[0], self.home[0], -1.0))) - room
+            if beyond > 0.0:
                 return Diagnosis(Status.UNREACHABLE, NO_AXIS, beyond)
         return at.axes
 

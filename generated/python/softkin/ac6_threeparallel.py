@@ -84,8 +84,8 @@ class Constants:
         # largest cosine within reach: 1, and the rounding of squared lengths
         bound_of_cos_q3 = 1.0000000000005 + 5e-16 * machine_scale * machine_scale / (a2 * a3)
         machine_scale_times_free_angle = 2e-12 * machine_scale
-        product_in_lost_digits_38 = 0.01 * machine_scale
-        product_in_away_q2 = 1e-11 * machine_scale
+        product_in_lost_digits_q3 = 0.01 * machine_scale
+        product_in_length_difference_q2 = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         a2_plus_a3 = a2 + a3
         a2_minus_a3 = a2 - a3
@@ -95,7 +95,8 @@ class Constants:
         self.offset_a2, self.offset_a3, self.offset_a4, self.offset_a5 = offset_a2, offset_a3, offset_a4, offset_a5
         self.offset_a6, self.machine_scale, self.rounding_q1 = offset_a6, machine_scale, rounding_q1
         self.bound_of_cos_q3, self.machine_scale_times_free_angle = bound_of_cos_q3, machine_scale_times_free_angle
-        self.product_in_lost_digits_38, self.product_in_away_q2 = product_in_lost_digits_38, product_in_away_q2
+        self.product_in_lost_digits_q3 = product_in_lost_digits_q3
+        self.product_in_length_difference_q2 = product_in_length_difference_q2
         self.one_by_machine_scale, self.a2_plus_a3, self.a2_minus_a3 = one_by_machine_scale, a2_plus_a3, a2_minus_a3
         self.quotient_in_closed_cos_q3 = quotient_in_closed_cos_q3
         self.quotient_in_closed_sin_q3 = quotient_in_closed_sin_q3
@@ -110,7 +111,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 59e418ca5544d8f1"
+    KEY = "ac6_threeparallel a721580085cf1d29"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -991,8 +992,9 @@ class Ac6ThreeParallel(Mechanism):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
+        offset_a6, one_by_machine_scale = k.offset_a6, k.one_by_machine_scale
+        product_in_length_difference_q2 = k.product_in_length_difference_q2
+        product_in_lost_digits_q3, quotient_in_closed_cos_q3 = k.product_in_lost_digits_q3, k.quotient_in_closed_cos_q3
         quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
         single_a6 = k.single_a6
@@ -1048,29 +1050,27 @@ class Ac6ThreeParallel(Mechanism):
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3 <= 1.0
-        lost_digits_38 = (not within_38) and (
+        lost_digits_q3 = (abs(cos_q3) > 1.0) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
-            or (abs(ahead_q1) <= product_in_lost_digits_38)
+            or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # q3: out of reach
-        if not (lost_digits_38 or (abs(cos_q3) <= bound_of_cos_q3)):
+        if not (lost_digits_q3 or (abs(cos_q3) <= bound_of_cos_q3)):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         arm_along_q2 = a2 + a3 * cos_q3
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         arm_across_q2 = a3 * sin_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_38
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49 = not within_49
+        lost_digits_q2 = length_difference_q2 > 1e-12
         open_a1 = mid_a1 if single_a1 else ref_a1  # A1: without a commanded turn, the value nearest to this
         near_a1 = 360.0 * (turn_a1 - 1 if turn_a1 > 0 else turn_a1) if turn_a1 != 0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0) * RADIAN  # A1: whole turns added
@@ -1117,7 +1117,7 @@ class Ac6ThreeParallel(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_38 or lost_digits_lengths_49:
+        if lost_digits_q2 or lost_digits_q3:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1161,7 +1161,7 @@ class Ac6ThreeParallel(Mechanism):
         else:
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not ((met or (away_q2 <= 1e-11)) and (met or (abs(cos_q3) <= bound_of_cos_q3))):
+        if not ((met or (length_difference_q2 <= 1e-11)) and (met or (abs(cos_q3) <= bound_of_cos_q3))):
             missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (

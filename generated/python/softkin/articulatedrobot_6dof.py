@@ -33,7 +33,7 @@ The largest number of operations in one call (subtractions count as additions; s
 counted together):
     forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
     inverse: 89 additions, 93 multiplications, 13 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 557 additions, 458 multiplications, 68 divisions, 25 square roots, 38 sines
+    inverse, all 8 branches: 505 additions, 390 multiplications, 56 divisions, 17 square roots, 34 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
     square roots, 7707 sines
@@ -82,9 +82,9 @@ class Constants:
         machine_scale = a1 + a2 + a3 + d4  # characteristic length of the machine
         effective_q3 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
-        product_in_lost_digits_23 = 0.01 * machine_scale
+        product_in_lost_digits_q3 = 0.01 * machine_scale
         a2_minus_effective_q3 = a2 - effective_q3
-        product_in_away_q2 = 1e-11 * machine_scale
+        product_in_length_difference_q2 = 1e-11 * machine_scale
         machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3 = 1.0 / effective_q3
@@ -95,8 +95,8 @@ class Constants:
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
         self.effective_q3, self.rounding_q1 = effective_q3, rounding_q1
-        self.product_in_lost_digits_23, self.a2_minus_effective_q3 = product_in_lost_digits_23, a2_minus_effective_q3
-        self.product_in_away_q2 = product_in_away_q2
+        self.product_in_lost_digits_q3, self.a2_minus_effective_q3 = product_in_lost_digits_q3, a2_minus_effective_q3
+        self.product_in_length_difference_q2 = product_in_length_difference_q2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3 = one_by_machine_scale, one_by_effective_q3
         self.a2_plus_effective_q3, self.d4_by_effective_q3 = a2_plus_effective_q3, d4_by_effective_q3
@@ -112,7 +112,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof bf408dbd843a3753"
+    KEY = "articulatedrobot_6dof 4ae5258f61d7ca33"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1064,8 +1064,9 @@ class ArticulatedRobot6DOF(Mechanism):
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_23, rounding_q1, single_a1 = k.product_in_lost_digits_23, k.rounding_q1, k.single_a1
+        offset_a6, one_by_machine_scale = k.offset_a6, k.one_by_machine_scale
+        product_in_length_difference_q2 = k.product_in_length_difference_q2
+        product_in_lost_digits_q3, rounding_q1, single_a1 = k.product_in_lost_digits_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
         single_a6 = k.single_a6
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6):
@@ -1094,25 +1095,23 @@ class ArticulatedRobot6DOF(Mechanism):
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        within_23 = -1.0 <= cos_swing_q3 <= 1.0
-        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3) > 1.0)
         # q3: out of reach
-        if not (lost_digits_23 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not (lost_digits_q3 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -effective_q3 * sin_swing_q3
         arm_across_q2 = a2 + effective_q3 * cos_swing_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_23
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_36 = away_q2 <= 1e-12
-        lost_digits_lengths_36 = not within_36
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * wrist_x - d3 * wrist_y) / distance_q1_squared
@@ -1197,7 +1196,7 @@ class ArticulatedRobot6DOF(Mechanism):
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_23 or lost_digits_lengths_36:
+        if lost_digits_q2 or lost_digits_q3:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -1241,7 +1240,9 @@ class ArticulatedRobot6DOF(Mechanism):
         else:
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
+        if not (
+            (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
+        ):
             missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (

@@ -9,8 +9,8 @@ Axes:
     A2 (rotary, deg): Crank; positive clockwise, zero along -X
 
 Configuration:
-    t: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
-    w: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
+    elbow: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
+    crank: 1 = left, 2 = right, 0 = automatic, 3 = both coincide
     period of A1: signed number of the turn, 0 = automatic: see `inverse`
     period of A2: signed number of the turn, 0 = automatic: see `inverse`
 
@@ -24,6 +24,10 @@ counted together):
     forward: 26 additions, 39 multiplications, 1 divisions, 2 square roots, 4 sines
     inverse: 42 additions, 49 multiplications, 10 divisions, 4 square roots, 2 sines
     inverse, all 4 branches: 124 additions, 133 multiplications, 27 divisions, 9 square roots, 6 sines
+
+elbow: on which side of the line from the TCP to the origin T is, the end of the upper arm, seen along this
+line. crank: on which side of the line from E to the origin W is, the end of the crank. In the mirrored
+reading left and right are exchanged.
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -112,8 +116,8 @@ class Constants:
         machine_scale_squared_times_free_angle = 2e-12 * machine_scale * machine_scale
         link_length_2_by_link_length_3 = link_length_2 / link_length_3
         one_by_link_length_2 = 1.0 / link_length_2
-        product_in_branch_w = link_length_1 * (link_length_2 + link_length_3)
-        quotient_in_branch_w = 1.0 / (link_length_2 * link_length_4)
+        product_in_branch_crank = link_length_1 * (link_length_2 + link_length_3)
+        quotient_in_branch_crank = 1.0 / (link_length_2 * link_length_4)
         sum_in_pivot_rear_x = link_length_1 + link_length_1 * link_length_3 / link_length_2
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         link_length_4_plus_link_length_5 = link_length_4 + link_length_5
@@ -141,8 +145,8 @@ class Constants:
         self.link_length_3_by_link_length_2 = link_length_3_by_link_length_2
         self.machine_scale_squared_times_free_angle = machine_scale_squared_times_free_angle
         self.link_length_2_by_link_length_3 = link_length_2_by_link_length_3
-        self.one_by_link_length_2, self.product_in_branch_w = one_by_link_length_2, product_in_branch_w
-        self.quotient_in_branch_w, self.sum_in_pivot_rear_x = quotient_in_branch_w, sum_in_pivot_rear_x
+        self.one_by_link_length_2, self.product_in_branch_crank = one_by_link_length_2, product_in_branch_crank
+        self.quotient_in_branch_crank, self.sum_in_pivot_rear_x = quotient_in_branch_crank, sum_in_pivot_rear_x
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.link_length_4_plus_link_length_5 = link_length_4_plus_link_length_5
         self.quotient_in_type2_arms_aligned = quotient_in_type2_arms_aligned
@@ -161,7 +165,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy d20273cef76cc241"
+    KEY = "mc_kin_type_12_xy 8613d87872cad463"
     AXES = (
         Axis(
             name="A1",
@@ -201,8 +205,8 @@ class KinType12XY(OffsetKinematics):
         ),
     )
     CONFIGURATION = (
-        ConfigurationByte(name="t", kind="branch", branches=("left", "right"), default=1),
-        ConfigurationByte(name="w", kind="branch", branches=("left", "right"), default=1),
+        ConfigurationByte(name="elbow", kind="branch", branches=("left", "right"), default=1),
+        ConfigurationByte(name="crank", kind="branch", branches=("left", "right"), default=1),
         ConfigurationByte(name="A1", kind="period", branches=(), default=0),
         ConfigurationByte(name="A2", kind="period", branches=(), default=0),
     )
@@ -291,8 +295,8 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
         offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
-        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
-        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
+        product_in_branch_crank, product_in_foot_fraction = k.product_in_branch_crank, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_crank = k.product_in_normal_divisor, k.quotient_in_branch_crank
         sum_in_pivot_rear_x, swap_xy = k.sum_in_pivot_rear_x, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -350,14 +354,14 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
+        branch_elbow = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        branch_w = quotient_in_branch_w * (
-            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        branch_crank = quotient_in_branch_crank * (
+            (product_in_branch_crank * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_crank * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         )
-        return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w))
+        return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_elbow, branch_crank))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         """The rotation of the frame."""
@@ -372,7 +376,7 @@ class KinType12XY(OffsetKinematics):
     ) -> Reals | Diagnosis:
         """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
-        sigma_t, sigma_w = signs
+        sigma_elbow, sigma_crank = signs
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
@@ -386,7 +390,7 @@ class KinType12XY(OffsetKinematics):
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
+        one_by_link_length_2, product_in_branch_crank = k.one_by_link_length_2, k.product_in_branch_crank
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
         single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
         if not reasonable(x, y, z, ref_a1, ref_a2):
@@ -417,7 +421,7 @@ class KinType12XY(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
@@ -438,9 +442,9 @@ class KinType12XY(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_crank * sin_a1) * one_by_link_length_2
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y)
+        across_a2 = one_by_link_length_2 * (product_in_branch_crank * cos_a1 - link_length_2 * span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -466,7 +470,7 @@ class KinType12XY(OffsetKinematics):
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_crank / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / effective_a2
         # rod rear: centre about which it swings
@@ -520,8 +524,8 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
         offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
-        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
-        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
+        product_in_branch_crank, product_in_foot_fraction = k.product_in_branch_crank, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_crank = k.product_in_normal_divisor, k.quotient_in_branch_crank
         quotient_in_margin_arms_aligned, sum_in_pivot_rear_x = k.quotient_in_margin_arms_aligned, k.sum_in_pivot_rear_x
         swap_xy = k.swap_xy
         # inputs must be numbers, and of reasonable size
@@ -583,9 +587,9 @@ class KinType12XY(OffsetKinematics):
         margin_stretched_1 = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        margin_stretched_2 = quotient_in_branch_w * (
-            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        margin_stretched_2 = quotient_in_branch_crank * (
+            (product_in_branch_crank * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_crank * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
@@ -722,7 +726,7 @@ class KinType12XY(OffsetKinematics):
         """The axes of one branch for a point off the flange."""
         x, y, z = point
         point_x, point_y, point_z = offset
-        sigma_t, sigma_w = signs
+        sigma_elbow, sigma_crank = signs
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self._constants
@@ -736,7 +740,7 @@ class KinType12XY(OffsetKinematics):
         link_length_5_times_shortest_link = k.link_length_5_times_shortest_link
         machine_scale_times_plane, mid_a1, mid_a2 = k.machine_scale_times_plane, k.mid_a1, k.mid_a2
         min_type2_margin, offset_a1, offset_a2 = k.min_type2_margin, k.offset_a1, k.offset_a2
-        one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
+        one_by_link_length_2, product_in_branch_crank = k.one_by_link_length_2, k.product_in_branch_crank
         quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
         single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2):
@@ -769,7 +773,7 @@ class KinType12XY(OffsetKinematics):
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
@@ -790,9 +794,9 @@ class KinType12XY(OffsetKinematics):
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_crank * sin_a1) * one_by_link_length_2
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y)
+        across_a2 = one_by_link_length_2 * (product_in_branch_crank * cos_a1 - link_length_2 * span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         # a2: its effective length is too short
@@ -818,7 +822,7 @@ class KinType12XY(OffsetKinematics):
         rod_1_x = flange_x - centre_1_x
         rod_1_y = flange_y - centre_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_crank / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / effective_a2
         # rod rear: centre about which it swings
@@ -861,8 +865,8 @@ class KinType12XY(OffsetKinematics):
         link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
         link_length_3_by_link_length_2, link_length_5 = k.link_length_3_by_link_length_2, k.link_length_5
         offset_a1, offset_a2, one_by_link_length_2 = k.offset_a1, k.offset_a2, k.one_by_link_length_2
-        product_in_branch_w, product_in_foot_fraction = k.product_in_branch_w, k.product_in_foot_fraction
-        product_in_normal_divisor, quotient_in_branch_w = k.product_in_normal_divisor, k.quotient_in_branch_w
+        product_in_branch_crank, product_in_foot_fraction = k.product_in_branch_crank, k.product_in_foot_fraction
+        product_in_normal_divisor, quotient_in_branch_crank = k.product_in_normal_divisor, k.quotient_in_branch_crank
         sum_in_pivot_rear_x, swap_xy = k.sum_in_pivot_rear_x, k.swap_xy
         # inputs must be numbers, and of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -920,14 +924,14 @@ class KinType12XY(OffsetKinematics):
         # the centres coincide or lie on a line: nothing holds the plate
         if not (normal_square > product_in_normal_divisor and height_square >= -link_length_2_squared_times_rounding):
             return Status.IMPOSSIBLE
-        branch_t = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
+        branch_elbow = one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -link_length_3_by_link_length_2 * span_upper_y
-        branch_w = quotient_in_branch_w * (
-            (product_in_branch_w * cos_a1 - link_length_2 * span_rear_y) * cos_a2
-            + (product_in_branch_w * sin_a1 - link_length_2 * span_rear_x) * sin_a2
+        branch_crank = quotient_in_branch_crank * (
+            (product_in_branch_crank * cos_a1 - link_length_2 * span_rear_y) * cos_a2
+            + (product_in_branch_crank * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         )
-        return (branch_t, branch_w)
+        return (branch_elbow, branch_crank)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

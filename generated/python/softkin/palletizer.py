@@ -84,8 +84,8 @@ class Constants:
         rounding_a1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         link_length_1_minus_link_length_2 = link_length_1 - link_length_2
         machine_scale_times_free_angle = 2e-12 * machine_scale
-        product_in_lost_digits_17 = 0.01 * machine_scale
-        product_in_away_a2 = 1e-11 * machine_scale
+        product_in_lost_digits_a3_from_a2 = 0.01 * machine_scale
+        product_in_length_difference_a2 = 1e-11 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
@@ -98,7 +98,8 @@ class Constants:
         self.machine_scale, self.bound_of_cos_swing_a3_from_a2 = machine_scale, bound_of_cos_swing_a3_from_a2
         self.rounding_a1, self.link_length_1_minus_link_length_2 = rounding_a1, link_length_1_minus_link_length_2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
-        self.product_in_lost_digits_17, self.product_in_away_a2 = product_in_lost_digits_17, product_in_away_a2
+        self.product_in_lost_digits_a3_from_a2 = product_in_lost_digits_a3_from_a2
+        self.product_in_length_difference_a2 = product_in_length_difference_a2
         self.one_by_machine_scale = one_by_machine_scale
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
@@ -438,8 +439,6 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
-            closed_tool_x = wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
-            # commanded point, in the frame of the last moving joint
             closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
             # Pythagoras: square of the distance ahead of the axis
             closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
@@ -447,6 +446,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_ahead_a1 = (
                 sqrt(closed_ahead_squared_a1) if closed_ahead_squared_a1 > 0.0 else 0.0
             ) * given_sigma_shoulder
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
             # coordinate of the point that the remaining links must reach
             closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - shoulder_offset
             # distance that the remaining links must span
@@ -907,8 +908,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
         link_length_1_plus_link_length_2, link_length_2 = k.link_length_1_plus_link_length_2, k.link_length_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        offset_a4, one_by_machine_scale, product_in_away_a2 = k.offset_a4, k.one_by_machine_scale, k.product_in_away_a2
-        product_in_lost_digits_17 = k.product_in_lost_digits_17
+        offset_a4, one_by_machine_scale = k.offset_a4, k.one_by_machine_scale
+        product_in_length_difference_a2 = k.product_in_length_difference_a2
+        product_in_lost_digits_a3_from_a2 = k.product_in_lost_digits_a3_from_a2
         quotient_in_closed_cos_swing_a3_from_a2, rounding_a1 = k.quotient_in_closed_cos_swing_a3_from_a2, k.rounding_a1
         shoulder_offset, single_a1, single_a2, single_a3 = k.shoulder_offset, k.single_a1, k.single_a2, k.single_a3
         wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
@@ -947,10 +949,11 @@ class Palletizer(OffsetKinematics, TwistChoice):
         cos_swing_a3_from_a2 = (
             one_plus_cos_a3_from_a2 - one_less_cos_a3_from_a2
         ) * quotient_in_closed_cos_swing_a3_from_a2
-        within_17 = -1.0 <= cos_swing_a3_from_a2 <= 1.0
-        lost_digits_17 = (not within_17) and (abs(ahead_a1) <= product_in_lost_digits_17)
+        lost_digits_a3_from_a2 = (abs(ahead_a1) <= product_in_lost_digits_a3_from_a2) and (
+            abs(cos_swing_a3_from_a2) > 1.0
+        )
         # a3_from_a2: out of reach
-        if not (lost_digits_17 or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
+        if not (lost_digits_a3_from_a2 or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2)):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         # sine squared, times the squared scale
@@ -963,15 +966,14 @@ class Palletizer(OffsetKinematics, TwistChoice):
         )
         arm_along_a2 = link_length_2 * cos_a3_from_a2
         arm_across_a2 = link_length_1 - link_length_2 * cos_swing_a3_from_a2
-        away_a2 = (
+        length_difference_a2 = (
             0.0
-            if reach > product_in_lost_digits_17
+            if reach > product_in_lost_digits_a3_from_a2
             else abs(arm_across_a2 * arm_across_a2 + arm_along_a2 * arm_along_a2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_a2 + reach)
+            / (product_in_length_difference_a2 + reach)
         )
-        within_30 = away_a2 <= 1e-12
-        lost_digits_lengths_30 = not within_30
+        lost_digits_a2 = length_difference_a2 > 1e-12
         # rotation by a1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_a1 > machine_scale_times_free_angle:
             cos_a1 = (ahead_a1 * x + tool_y * y) / distance_a1_squared
@@ -1010,7 +1012,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_17 or lost_digits_lengths_30:
+        if lost_digits_a2 or lost_digits_a3_from_a2:
             found = self._meet_point(
                 (
                     point_x,
@@ -1040,7 +1042,10 @@ class Palletizer(OffsetKinematics, TwistChoice):
         else:
             met, found_a1, found_a2, found_a3, found_a4 = (False, 0.0, 0.0, 0.0, 0.0)
         # a3_from_a2: out of reach
-        if not ((met or (away_a2 <= 1e-11)) and (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2))):
+        if not (
+            (met or (length_difference_a2 <= 1e-11))
+            and (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2))
+        ):
             missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         return (

@@ -71,9 +71,9 @@ class Constants:
         effective_q3_2 = sqrt(a3 * a3 + d4 * d4)  # effective length of the arm that q3 turns
         rounding_q1 = 1e-24 * machine_scale * machine_scale  # rounding error of a squared length
         a2_times_shortest_link = 1e-9 * a2
-        product_in_lost_digits_19 = 0.01 * machine_scale
+        product_in_lost_digits_q3 = 0.01 * machine_scale
         a2_minus_effective_q3_2 = a2 - effective_q3_2
-        product_in_away_q2 = 1e-11 * machine_scale
+        product_in_length_difference_q2 = 1e-11 * machine_scale
         machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         one_by_effective_q3_2 = 1.0 / effective_q3_2
@@ -83,8 +83,9 @@ class Constants:
         self.d1, self.a1, self.a2, self.d3, self.a3, self.d4, self.offset_a1 = d1, a1, a2, d3, a3, d4, offset_a1
         self.offset_a2, self.offset_a3, self.machine_scale = offset_a2, offset_a3, machine_scale
         self.effective_q3_2, self.rounding_q1 = effective_q3_2, rounding_q1
-        self.a2_times_shortest_link, self.product_in_lost_digits_19 = a2_times_shortest_link, product_in_lost_digits_19
-        self.a2_minus_effective_q3_2, self.product_in_away_q2 = a2_minus_effective_q3_2, product_in_away_q2
+        self.a2_times_shortest_link, self.product_in_lost_digits_q3 = a2_times_shortest_link, product_in_lost_digits_q3
+        self.a2_minus_effective_q3_2 = a2_minus_effective_q3_2
+        self.product_in_length_difference_q2 = product_in_length_difference_q2
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.one_by_effective_q3_2 = one_by_machine_scale, one_by_effective_q3_2
         self.a2_plus_effective_q3_2, self.d4_by_effective_q3_2 = a2_plus_effective_q3_2, d4_by_effective_q3_2
@@ -100,7 +101,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 87af57219db5c9a0"
+    KEY = "pos_rrr 5601d9cd2720ec64"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -872,8 +873,9 @@ class PosRRR(OffsetKinematics):
         d3, d4_by_effective_q3_2, effective_q3_2 = k.d3, k.d4_by_effective_q3_2, k.effective_q3_2
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        one_by_machine_scale = k.one_by_machine_scale
+        product_in_length_difference_q2 = k.product_in_length_difference_q2
+        product_in_lost_digits_q3, rounding_q1, single_a1 = k.product_in_lost_digits_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -898,25 +900,23 @@ class PosRRR(OffsetKinematics):
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        within_19 = -1.0 <= cos_swing_q3 <= 1.0
-        lost_digits_19 = (not within_19) and (abs(ahead_q1) <= product_in_lost_digits_19)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3) > 1.0)
         # q3: out of reach
-        if not (lost_digits_19 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not (lost_digits_q3 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -effective_q3_2 * sin_swing_q3
         arm_across_q2 = a2 + effective_q3_2 * cos_swing_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_19
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_32 = away_q2 <= 1e-12
-        lost_digits_lengths_32 = not within_32
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x - d3 * y) / distance_q1_squared
@@ -955,7 +955,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_19 or lost_digits_lengths_32:
+        if lost_digits_q2 or lost_digits_q3:
             found = self._meet_pose(
                 (
                     ref_a1,
@@ -980,7 +980,9 @@ class PosRRR(OffsetKinematics):
         else:
             met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
+        if not (
+            (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
+        ):
             missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
@@ -1095,8 +1097,9 @@ class PosRRR(OffsetKinematics):
         a1, a2, a2_times_shortest_link, a3, d1, d3, d4 = k.a1, k.a2, k.a2_times_shortest_link, k.a3, k.d1, k.d3, k.d4
         machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
         mid_a3, offset_a1, offset_a2, offset_a3 = k.mid_a3, k.offset_a1, k.offset_a2, k.offset_a3
-        one_by_machine_scale, product_in_away_q2 = k.one_by_machine_scale, k.product_in_away_q2
-        product_in_lost_digits_19, rounding_q1, single_a1 = k.product_in_lost_digits_19, k.rounding_q1, k.single_a1
+        one_by_machine_scale = k.one_by_machine_scale
+        product_in_length_difference_q2 = k.product_in_length_difference_q2
+        product_in_lost_digits_q3, rounding_q1, single_a1 = k.product_in_lost_digits_q3, k.rounding_q1, k.single_a1
         single_a2, single_a3 = k.single_a2, k.single_a3
         if not reasonable(x, y, z, point_x, point_y, point_z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -1130,10 +1133,9 @@ class PosRRR(OffsetKinematics):
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        within_21 = -1.0 <= cos_swing_q3 <= 1.0
-        lost_digits_21 = (not within_21) and (abs(ahead_q1) <= product_in_lost_digits_19)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3) > 1.0)
         # q3: out of reach
-        if not (lost_digits_21 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
+        if not (lost_digits_q3 or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005)):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
@@ -1143,15 +1145,14 @@ class PosRRR(OffsetKinematics):
         sin_q3 = (tool_x * cos_swing_q3 + tool_z * sin_swing_q3) / effective_q3
         arm_along_q2 = tool_x * cos_q3 - tool_z * sin_q3
         arm_across_q2 = a2 + tool_z * cos_q3 + tool_x * sin_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_19
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_34 = away_q2 <= 1e-12
-        lost_digits_lengths_34 = not within_34
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
             cos_q1 = (ahead_q1 * x + tool_y * y) / distance_q1_squared
@@ -1187,7 +1188,7 @@ class PosRRR(OffsetKinematics):
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         # if digits were lost, steps on the closure meet the pose
-        if lost_digits_21 or lost_digits_lengths_34:
+        if lost_digits_q2 or lost_digits_q3:
             found = self._meet_point(
                 (
                     point_x,
@@ -1215,7 +1216,9 @@ class PosRRR(OffsetKinematics):
         else:
             met, found_a1, found_a2, found_a3 = (False, 0.0, 0.0, 0.0)
         # q3: out of reach
-        if not ((met or (away_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))):
+        if not (
+            (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
+        ):
             missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))

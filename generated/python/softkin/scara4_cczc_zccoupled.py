@@ -109,7 +109,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_CCZC_ZCcoupled"
-    KEY = "scara4_cczc_zccoupled a75095bde19021b6"
+    KEY = "scara4_cczc_zccoupled d7a204d91788c7a4"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -135,18 +135,10 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
         Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of(
-            "angle",
-            "lower_a4",
-            "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0,
-            high=720.0,
+            "angle", "lower_a4", "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch"
         ),
         Parameter.of(
-            "angle",
-            "upper_a4",
-            "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0,
-            high=720.0,
+            "angle", "upper_a4", "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch"
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
         Parameter.of(

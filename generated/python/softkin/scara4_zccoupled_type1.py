@@ -97,7 +97,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
-    KEY = "scara4_zccoupled_type1 3edcd20bf37a2ff6"
+    KEY = "scara4_zccoupled_type1 a5ed80bacc15434a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -105,38 +105,24 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         Axis(name="A4", kind="helical", unit="deg", meaning="Quill about Z", multi_turn=True),
     )
     PARAMETERS = (
-        Parameter.of("length", "link_length_1", "Length of link 1, axis A1 to axis A2", high=800.0),
-        Parameter.of("length", "link_length_2", "Length of link 2, axis A2 to axis A4", high=800.0),
+        Parameter.of("length", "link_length_1", "Length of link 1, axis A1 to axis A2"),
+        Parameter.of("length", "link_length_2", "Length of link 2, axis A2 to axis A4"),
+        Parameter.of("pitch", "pitch_zc", "Travel of the quill per clockwise turn of A4, downward negative"),
+        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position"),
+        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position"),
+        Parameter.of("angle", "offset_a4", "A4: axis value at the kinematic zero position"),
+        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit"),
+        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit"),
+        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit"),
         Parameter.of(
-            "pitch",
-            "pitch_zc",
-            "Travel of the quill per clockwise turn of A4, downward negative",
-            low=-200.0,
-            high=200.0,
-        ),
-        Parameter.of("angle", "offset_a1", "A1: axis value at the kinematic zero position", low=-360.0, high=360.0),
-        Parameter.of("angle", "offset_a2", "A2: axis value at the kinematic zero position", low=-360.0, high=360.0),
-        Parameter.of("distance", "offset_a3", "A3: axis value at the kinematic zero position", low=-400.0, high=400.0),
-        Parameter.of("angle", "offset_a4", "A4: axis value at the kinematic zero position", low=-720.0, high=720.0),
-        Parameter.of("angle", "lower_a1", "A1: lower limit of the axis, both 0: no limit", low=-360.0, high=360.0),
-        Parameter.of("angle", "upper_a1", "A1: upper limit of the axis, both 0: no limit", low=-360.0, high=360.0),
-        Parameter.of("angle", "lower_a2", "A2: lower limit of the axis, both 0: no limit", low=-360.0, high=360.0),
-        Parameter.of("angle", "upper_a2", "A2: upper limit of the axis, both 0: no limit", low=-360.0, high=360.0),
-        Parameter.of("distance", "lower_a3", "A3: lower limit of the axis, both 0: no limit", low=-400.0, high=400.0),
-        Parameter.of("distance", "upper_a3", "A3: upper limit of the axis, both 0: no limit", low=-400.0, high=400.0),
-        Parameter.of(
-            "angle",
-            "lower_a4",
-            "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0,
-            high=720.0,
+            "angle", "lower_a4", "A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch"
         ),
         Parameter.of(
-            "angle",
-            "upper_a4",
-            "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
-            low=-720.0,
-            high=720.0,
+            "angle", "upper_a4", "A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch"
         ),
         Parameter.of("flag", "check_limits", "inverse kinematics tests the limits", default=1.0),
         Parameter.of(

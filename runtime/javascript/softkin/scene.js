@@ -33,7 +33,7 @@ export function sceneOf(parts, values, position, rotation) {
 }
 
 /** A chain, composed from its base: a body between every two joints. */
-function chainOf({ factors }, values) {
+function chainOf({ factors, loops = [] }, values) {
   const joints = [];
   let [at, rows] = [[0, 0, 0], IDENTITY];
   let body = { name: "base", kind: "base", joints: [], frame: { position: at, rotation: rows }, lines: [] };
@@ -49,7 +49,9 @@ function chainOf({ factors }, values) {
     shifts = [];
     start = at;
   };
+  const frames = [];
   for (const factor of factors) {
+    frames.push([at, rows]);
     const [amount, rate] = values[factor.amount];
     const sense = rate < 0 ? -1 : 1;
     const direction = columnOf(rows, factor.axis);
@@ -71,6 +73,22 @@ function chainOf({ factors }, values) {
     }
   }
   finish(null);
+  for (const loop of loops) {
+    const [origin, axes] = frames[loop.at];
+    const placed = (place) => plus(origin, axes.map((row) => dot(row, values[place])));
+    const [start, tip] = [loop.start.map(placed), loop.tip.map(placed)];
+    const line = [start[start.length - 1], tip[tip.length - 1]];
+    const axis = unit(minus(line[1], line[0]));
+    const frame = { position: line[0], rotation: frameAlong(axis) };
+    bodies.push({ name: loop.name, kind: "rod", joints: loop.joints, frame, lines: [line] });
+    if (loop.cylinder) {
+      const slide = { joints: [loop.cylinder], kind: "slide", at: times(0.5, plus(...line)), axis };
+      joints.push({ ...slide, body: bodies.length - 1, travel: sizeOf(minus(line[1], line[0])) });
+    }
+    const arms = [start, tip].flatMap((pins) => pins.slice(1).map((pin, i) => [pins[i], pin]));
+    const lever = { name: `levers of ${loop.name}`, kind: "link", joints: loop.joints, frame, lines: arms };
+    if (arms.length) bodies.push(lever);
+  }
   return { bodies, joints };
 }
 

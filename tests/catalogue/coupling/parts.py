@@ -10,6 +10,7 @@ from softkin import Status
 
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import Array, Closure
+from tests.catalogue.driven_machines import DrivenClosure
 from tests.mechanisms import catalogue
 
 EVERYTHING = {m.name: m for _, m in catalogue()}
@@ -67,6 +68,8 @@ def part(mechanism: Mechanism, **given: float) -> Part:
     known = dict(given) if mechanism in ORIENTATIONS else lengths | given
     offsets = {j.offset.name: 3.0 + 2.0 * k for k, j in enumerate(mechanism.joints) if j.domain is None}
     robot = softkin.catalogue()[mechanism.name](**(offsets | known))
+    if mechanism.drives:
+        return Part(mechanism, robot, DrivenClosure(mechanism, robot.parameters, sum(map(abs, lengths.values()))))
     return Part(mechanism, robot, Closure(mechanism, robot.parameters))
 
 
@@ -97,6 +100,8 @@ def frames(carrier: Part, first: Array, wrist: Part, second: Array) -> tuple[Arr
 
 def _range(one: Part, joint: object) -> tuple[float, float]:
     found = one.mechanism.joints[[j is joint for j in one.mechanism.joints].index(True)]
+    if found.loops:  # a cylinder has no other lengths than those at which its loop closes
+        return min(0.8 * found.nominal, 1.2 * found.nominal), max(0.8 * found.nominal, 1.2 * found.nominal)
     size = 170.0 if found.is_angle else 400.0
     low, high = found.domain or (-size, size)
     return max(low, -size), min(high, size)

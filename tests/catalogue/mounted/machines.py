@@ -9,6 +9,7 @@ import softkin
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.closure import Array
 from tests.catalogue.coupling.parts import ORIENTATIONS, orientation_parts
+from tests.catalogue.driven_machines import driven_machines_of
 from tests.catalogue.loop_machines import loop_machines_of
 from tests.catalogue.machines import machines_of
 from tests.catalogue.search.arms import arm
@@ -64,6 +65,8 @@ def sample_of(mechanism: Mechanism) -> Sample:
         return Sample(mechanism, arm(LATERAL), axes, frame_of_arm(axes, LATERAL), 2000.0)
     if mechanism.is_platform:
         machine = turning_machines_of(mechanism)[-1]
+    elif mechanism.drives:
+        machine = driven_machines_of(mechanism)[-1]
     else:
         machine = (loop_machines_of if mechanism.rods else machines_of)(mechanism)[-1]
     axes = machine.draw(POSES, rng, 170.0)

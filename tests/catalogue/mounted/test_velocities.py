@@ -49,9 +49,12 @@ def twists(robot: softkin.Mechanism, axes: Array, reach: float) -> Array:
 def rows_of(robot: softkin.Mechanism, axes: Array, reach: float) -> Array:
     """The rows of the Jacobian, of these differences."""
     six = twists(robot, axes, reach)
-    tilts = np.array(robot.forward(axes)[0].rotation).T @ six[3:]
+    frame = np.array(robot.forward(axes)[0].rotation)
+    tilts = frame.T @ six[3:]
     names = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
     known = dict(zip(names, (*six, *tilts), strict=False))
+    tool = robot.tool.rotation if isinstance(robot, softkin.Mounted) else np.eye(3)
+    known["pitch"] = (frame @ np.transpose(tool))[:, 1] @ six[3:]  # about y of the flange, as the joints that pitch it
     return np.array([known[name] for name in robot.JACOBIAN_ROWS]).reshape(len(robot.JACOBIAN_ROWS), len(robot.AXES))
 
 

@@ -29,7 +29,7 @@ def image_with_orientation(pair: SerialPair, sample: Sample) -> None:
     A machine that follows the whole rotation, or the tool's direction, gives the rotation itself.
     """
     refusals = []
-    whole = pair.mechanism.task.turning in (Turning.DIRECTION, Turning.FULL)
+    whole = pair.mechanism.task.turning in (Turning.DIRECTION, Turning.PITCH, Turning.FULL)
     for rows in (sample.rotation, NO_TURN, HALF_TURN):
         status, projected = (OK, rows) if whole else asked(pair.robot.project, rows)
         expected = None

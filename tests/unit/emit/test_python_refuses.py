@@ -17,6 +17,7 @@ from tests.mechanisms import catalogue
 MECHANISMS = [m for _, m in catalogue()]
 LENGTHS = {"arm_length_1": 300.0, "arm_length_2": 200.0}
 NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+UPSIDE_DOWN = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
 
 
 def nominal(mechanism: Mechanism) -> softkin.Mechanism:
@@ -38,8 +39,8 @@ def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
     rng = np.random.default_rng(7)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") + 100.0
     refused = 0
-    for _ in range(40):
-        frame = tuple(rng.uniform(-size, size, 3).tolist()), NO_TURN
+    for k in range(40):
+        frame = tuple(rng.uniform(-size, size, 3).tolist()), NO_TURN if k % 2 else UPSIDE_DOWN
         near = held_at(robot, np.zeros(len(robot.AXES)))
         error, found = raised(robot.inverse, frame, None, near), robot.diagnose(frame, None, near)
         assert (error is None) == (found.status is Status.OK)

@@ -29,7 +29,7 @@ def robot_of(
     values |= {joint.offset.name: offset * k for k, joint in enumerate(description.joints, 1)}
     if limit is not None:
         for joint in description.joints:
-            if joint.is_angle and joint.pitch == 0:
+            if joint.axis_is_angle and joint.pitch == 0:
                 values |= {f"lower_{joint.key}": -0.7 * limit, f"upper_{joint.key}": limit}
     return softkin.catalogue()[description.name](**values, check_limits=check_limits)
 

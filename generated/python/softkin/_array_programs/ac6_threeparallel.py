@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 438
+    VALUES = 436
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -768,25 +768,23 @@ class ArrayPrograms(Programs):
         one_less_cos_q3 = (k.a2_plus_a3 + reach) * (k.a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - k.a2_minus_a3) * (k.a2_minus_a3 + reach)  # 1 + cosine, times the scale
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * k.quotient_in_closed_cos_q3
-        within_38 = absolute(cos_q3) <= 1.0
-        lost_digits_38 = (opposite(within_38)) & (
+        lost_digits_q3 = (absolute(cos_q3) > 1.0) & (
             (absolute(q6_radius_of_q5) <= 0.01)
             | (absolute(radius_q6) <= 0.01)
-            | (absolute(ahead_q1) <= k.product_in_lost_digits_38)
+            | (absolute(ahead_q1) <= k.product_in_lost_digits_q3)
         )
         arm_along_q2 = k.a2 + k.a3 * cos_q3
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = root(sine_square_q3) * sigma_elbow * k.quotient_in_closed_sin_q3
         arm_across_q2 = k.a3 * sin_q3
-        away_q2 = select(
-            reach > k.product_in_lost_digits_38,
+        length_difference_q2 = select(
+            reach > k.product_in_lost_digits_q3,
             0.0,
             absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * k.one_by_machine_scale
-            / (k.product_in_away_q2 + reach),
+            / (k.product_in_length_difference_q2 + reach),
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49 = opposite(within_49)
+        lost_digits_q2 = length_difference_q2 > 1e-12
         open_a1 = select(k.single_a1, k.mid_a1, ref_a1)  # A1: without a commanded turn, the value nearest to this
         near_a1 = select(turn_a1 != 0, 360.0 * select(turn_a1 > 0, turn_a1 - 1, turn_a1), open_a1)
         axis_a1 = nearest_period(k.offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: whole turns added
@@ -829,10 +827,10 @@ class ArrayPrograms(Programs):
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, lost_digits_38 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
+        require(status, lost_digits_q3 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_38 | lost_digits_lengths_49,
+            lost_digits_q2 | lost_digits_q3,
             self.meet_pose,
             (
                 ref_a1,
@@ -875,7 +873,9 @@ class ArrayPrograms(Programs):
         met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = found
         # q3: out of reach
         require(
-            status, (met | (away_q2 <= 1e-11)) & (met | (absolute(cos_q3) <= k.bound_of_cos_q3)), Status.UNREACHABLE
+            status,
+            (met | (length_difference_q2 <= 1e-11)) & (met | (absolute(cos_q3) <= k.bound_of_cos_q3)),
+            Status.UNREACHABLE,
         )
         return (
             select(met, found_a1, axis_a1),

@@ -93,12 +93,12 @@ class ArrayPrograms(Programs):
         else:
             span_upper_x = x  # rod upper: known part of its vector
             span_upper_y = y
-        branch_t = k.one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
+        branch_elbow = k.one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        branch_w = k.quotient_in_branch_w * (
-            (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
-            + (k.product_in_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
+        branch_crank = k.quotient_in_branch_crank * (
+            (k.product_in_branch_crank * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
+            + (k.product_in_branch_crank * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
         )
         # the centres coincide or lie on a line: nothing holds the plate
         # the rods do not meet
@@ -107,14 +107,14 @@ class ArrayPrograms(Programs):
             (normal_square > k.product_in_normal_divisor) & (height_square >= -k.link_length_2_squared_times_rounding),
             Status.IMPOSSIBLE,
         )
-        return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_t, branch_w)), status
+        return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (branch_elbow, branch_crank)), status
 
     def branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, on their turns; limits are not tested."""
         x, y, z = position
-        sigma_t, sigma_w = signs
+        sigma_elbow, sigma_crank = signs
         turn_a1, turn_a2 = turns
         ref_a1, ref_a2 = reference
         k = self.constants
@@ -146,14 +146,14 @@ class ArrayPrograms(Programs):
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
         cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1) / divisor_of_cos_a1
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_t / divisor_of_cos_a1
+        sin_swing_a1 = -2.0 * root(sine_square_a1) * sigma_elbow / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = (k.link_length_2 * span_rear_x - k.product_in_branch_w * sin_a1) * k.one_by_link_length_2
+        along_a2 = (k.link_length_2 * span_rear_x - k.product_in_branch_crank * sin_a1) * k.one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        across_a2 = k.one_by_link_length_2 * (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y)
+        across_a2 = k.one_by_link_length_2 * (k.product_in_branch_crank * cos_a1 - k.link_length_2 * span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = select(effective_a2 > k.link_length_5_times_shortest_link, effective_a2, 1.0)
@@ -181,7 +181,7 @@ class ArrayPrograms(Programs):
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_w / divisor_of_cos_a2
+        sin_swing_a2 = -2.0 * root(sine_square_a2) * sigma_crank / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings
@@ -291,9 +291,9 @@ class ArrayPrograms(Programs):
         margin_stretched_1 = k.one_by_link_length_2 * (span_upper_x * cos_a1 - span_upper_y * sin_a1)
         span_rear_x = -k.link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         span_rear_y = -k.link_length_3_by_link_length_2 * span_upper_y
-        margin_stretched_2 = k.quotient_in_branch_w * (
-            (k.product_in_branch_w * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
-            + (k.product_in_branch_w * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
+        margin_stretched_2 = k.quotient_in_branch_crank * (
+            (k.product_in_branch_crank * cos_a1 - k.link_length_2 * span_rear_y) * cos_a2
+            + (k.product_in_branch_crank * sin_a1 - k.link_length_2 * span_rear_x) * sin_a2
         )
         rod_1_x = x - centre_1_x
         rod_1_y = y - centre_1_y

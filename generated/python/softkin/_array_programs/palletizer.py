@@ -205,13 +205,13 @@ class ArrayPrograms(Programs):
             closed_cos_a4 = cos(closed_reference_a4)
             closed_sin_a4 = sin(closed_reference_a4)
             # commanded point, in the frame of the last moving joint
-            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
-            # commanded point, in the frame of the last moving joint
             closed_tool_y = closed_cos_a4 * given_point_y + closed_sin_a4 * given_point_x
             # Pythagoras: square of the distance ahead of the axis
             closed_ahead_squared_a1 = (closed_distance_a1 + closed_tool_y) * (closed_distance_a1 - closed_tool_y)
             # how far ahead of the axis the point is; negative: behind it
             closed_ahead_a1 = root(closed_ahead_squared_a1) * given_sigma_shoulder
+            # commanded point, in the frame of the last moving joint
+            closed_tool_x = k.wrist_offset_x + closed_cos_a4 * given_point_x - closed_sin_a4 * given_point_y
             # coordinate of the point that the remaining links must reach
             closed_wrist_x_from_a1 = closed_ahead_a1 - closed_tool_x - k.shoulder_offset
             # distance that the remaining links must span

@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 423
+    VALUES = 421
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -698,21 +698,19 @@ class ArrayPrograms(Programs):
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = select(sum_q3 > 0.0, sum_q3, 1.0)
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        within_19 = absolute(cos_swing_q3) <= 1.0
-        lost_digits_19 = (opposite(within_19)) & (absolute(ahead_q1) <= k.product_in_lost_digits_19)
+        lost_digits_q3 = (absolute(ahead_q1) <= k.product_in_lost_digits_q3) & (absolute(cos_swing_q3) > 1.0)
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_swing_q3 = -2.0 * root(sine_square_q3) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -k.effective_q3_2 * sin_swing_q3
         arm_across_q2 = k.a2 + k.effective_q3_2 * cos_swing_q3
-        away_q2 = select(
-            reach > k.product_in_lost_digits_19,
+        length_difference_q2 = select(
+            reach > k.product_in_lost_digits_q3,
             0.0,
             absolute(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * k.one_by_machine_scale
-            / (k.product_in_away_q2 + reach),
+            / (k.product_in_length_difference_q2 + reach),
         )
-        within_32 = away_q2 <= 1e-12
-        lost_digits_lengths_32 = opposite(within_32)
+        lost_digits_q2 = length_difference_q2 > 1e-12
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
@@ -759,10 +757,10 @@ class ArrayPrograms(Programs):
         # q1: out of reach
         require(status, ahead_squared_q1 >= -1e-12 * distance_q1_squared - k.rounding_q1, Status.UNREACHABLE)
         # q3: out of reach
-        require(status, lost_digits_19 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
+        require(status, lost_digits_q3 | (absolute(cos_swing_q3) <= 1.0000000000005), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
         found = run_where(
-            lost_digits_19 | lost_digits_lengths_32,
+            lost_digits_q2 | lost_digits_q3,
             self.meet_pose,
             (
                 ref_a1,
@@ -786,7 +784,9 @@ class ArrayPrograms(Programs):
         met, found_a1, found_a2, found_a3 = found
         # q3: out of reach
         require(
-            status, (met | (away_q2 <= 1e-11)) & (met | (absolute(cos_swing_q3) <= 1.0000000000005)), Status.UNREACHABLE
+            status,
+            (met | (length_difference_q2 <= 1e-11)) & (met | (absolute(cos_swing_q3) <= 1.0000000000005)),
+            Status.UNREACHABLE,
         )
         return (select(met, found_a1, axis_a1), select(met, found_a2, axis_a2), select(met, found_a3, axis_a3)), status
 

@@ -26,8 +26,9 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-    product_in_lost_digits_38, quotient_in_closed_cos_q3 = k.product_in_lost_digits_38, k.quotient_in_closed_cos_q3
+    offset_a6, one_by_machine_scale = k.offset_a6, k.one_by_machine_scale
+    product_in_length_difference_q2 = k.product_in_length_difference_q2
+    product_in_lost_digits_q3, quotient_in_closed_cos_q3 = k.product_in_lost_digits_q3, k.quotient_in_closed_cos_q3
     quotient_in_closed_sin_q3, rounding_q1, single_a1 = k.quotient_in_closed_sin_q3, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
     single_a6 = k.single_a6
@@ -100,12 +101,11 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_down = (reach_left_down - a2_minus_a3) * (a2_minus_a3 + reach_left_down)
         cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3_left_down <= 1.0
-        lost_digits_38 = (not within_38) and (
-            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
+        lost_digits_q3 = (abs(cos_q3_left_down) > 1.0) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # digits may be lost
-        if not (not lost_digits_38):
+        if not (not lost_digits_q3):
             return ()
         # at a singularity: the angle of the reference
         if radius_q6_left > 2e-12:
@@ -133,12 +133,11 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_left_up = (reach_left_up - a2_minus_a3) * (a2_minus_a3 + reach_left_up)
         cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3_left_up <= 1.0
-        lost_digits_38 = (not within_38) and (
-            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
+        lost_digits_q3 = (abs(cos_q3_left_up) > 1.0) and (
+            (-0.01 <= radius_q6_left <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # digits may be lost
-        if not (not lost_digits_38):
+        if not (not lost_digits_q3):
             return ()
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:
@@ -181,12 +180,11 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_down = (reach_right_down - a2_minus_a3) * (a2_minus_a3 + reach_right_down)
         cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3_right_down <= 1.0
-        lost_digits_38 = (not within_38) and (
-            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
+        lost_digits_q3 = (abs(cos_q3_right_down) > 1.0) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # digits may be lost
-        if not (not lost_digits_38):
+        if not (not lost_digits_q3):
             return ()
         # at a singularity: the angle of the reference
         if radius_q6_right > 2e-12:
@@ -214,99 +212,90 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3_right_up = (reach_right_up - a2_minus_a3) * (a2_minus_a3 + reach_right_up)
         cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3_right_up <= 1.0
-        lost_digits_38 = (not within_38) and (
-            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_38)
+        lost_digits_q3 = (abs(cos_q3_right_up) > 1.0) and (
+            (-0.01 <= radius_q6_right <= 0.01) or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # digits may be lost
-        if not (not lost_digits_38):
+        if not (not lost_digits_q3):
             return ()
         arm_along_q2_left_down = a2 + a3 * cos_q3_left_down
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_left_down * one_plus_cos_q3_left_down
         sin_q3_left_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_across_q2_left_up_down = a3 * sin_q3_left_up_down
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_left_down > product_in_lost_digits_38
+            if reach_left_down > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_left_up_down * arm_across_q2_left_up_down
                 + arm_along_q2_left_down * arm_along_q2_left_down
                 - reach_left_down * reach_left_down
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_left_down)
+            / (product_in_length_difference_q2 + reach_left_down)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49_down = not within_49
+        lost_digits_q2_down = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (not lost_digits_lengths_49_down):
+        if not (not lost_digits_q2_down):
             return ()
         arm_along_q2_left_up = a2 + a3 * cos_q3_left_up
         sine_square_q3 = one_less_cos_q3_left_up * one_plus_cos_q3_left_up  # sine squared, times the squared scale
         sin_q3_left_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_across_q2_left_up_up = a3 * sin_q3_left_up_up
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_left_up > product_in_lost_digits_38
+            if reach_left_up > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_left_up_up * arm_across_q2_left_up_up
                 + arm_along_q2_left_up * arm_along_q2_left_up
                 - reach_left_up * reach_left_up
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_left_up)
+            / (product_in_length_difference_q2 + reach_left_up)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49_up = not within_49
+        lost_digits_q2_up = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (
-            (not lost_digits_lengths_49_up) and (not lost_digits_lengths_49_down) and (not lost_digits_lengths_49_up)
-        ):
+        if not ((not lost_digits_q2_up) and (not lost_digits_q2_down) and (not lost_digits_q2_up)):
             return ()
         arm_along_q2_right_down = a2 + a3 * cos_q3_right_down
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_down * one_plus_cos_q3_right_down
         sin_q3_right_up_down = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_across_q2_right_up_down = a3 * sin_q3_right_up_down
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_right_down > product_in_lost_digits_38
+            if reach_right_down > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_right_up_down * arm_across_q2_right_up_down
                 + arm_along_q2_right_down * arm_along_q2_right_down
                 - reach_right_down * reach_right_down
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_right_down)
+            / (product_in_length_difference_q2 + reach_right_down)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49_down = not within_49
+        lost_digits_q2_down = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (not lost_digits_lengths_49_down):
+        if not (not lost_digits_q2_down):
             return ()
         arm_along_q2_right_up = a2 + a3 * cos_q3_right_up
         # sine squared, times the squared scale
         sine_square_q3 = one_less_cos_q3_right_up * one_plus_cos_q3_right_up
         sin_q3_right_up_up = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * quotient_in_closed_sin_q3
         arm_across_q2_right_up_up = a3 * sin_q3_right_up_up
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_right_up > product_in_lost_digits_38
+            if reach_right_up > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_right_up_up * arm_across_q2_right_up_up
                 + arm_along_q2_right_up * arm_along_q2_right_up
                 - reach_right_up * reach_right_up
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_right_up)
+            / (product_in_length_difference_q2 + reach_right_up)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49_up = not within_49
+        lost_digits_q2_up = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (
-            (not lost_digits_lengths_49_up) and (not lost_digits_lengths_49_down) and (not lost_digits_lengths_49_up)
-        ):
+        if not ((not lost_digits_q2_up) and (not lost_digits_q2_down) and (not lost_digits_q2_up)):
             return ()
         refusal_left_down = 0 if abs(cos_q3_left_down) <= bound_of_cos_q3 else 3  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left) * RADIAN
@@ -587,14 +576,13 @@ def unrolled(k: Constants) -> Unrolled:
         one_less_cos_q3 = (a2_plus_a3 + reach) * (a2_plus_a3 - reach)
         one_plus_cos_q3 = (reach - a2_minus_a3) * (a2_minus_a3 + reach)  # 1 + cosine, times the scale
         cos_q3 = (one_plus_cos_q3 - one_less_cos_q3) * quotient_in_closed_cos_q3
-        within_38 = -1.0 <= cos_q3 <= 1.0
-        lost_digits_38 = (not within_38) and (
+        lost_digits_q3 = (abs(cos_q3) > 1.0) and (
             (-0.01 <= q6_radius_of_q5 <= 0.01)
             or (-0.01 <= radius_q6 <= 0.01)
-            or (abs(ahead_q1) <= product_in_lost_digits_38)
+            or (abs(ahead_q1) <= product_in_lost_digits_q3)
         )
         # digits may be lost
-        if not (not lost_digits_38):
+        if not (not lost_digits_q3):
             return ()
         # q3: out of reach
         if not (abs(cos_q3) <= bound_of_cos_q3):
@@ -603,17 +591,16 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3 * one_plus_cos_q3  # sine squared, times the squared scale
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow * quotient_in_closed_sin_q3
         arm_across_q2 = a3 * sin_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_38
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_49 = away_q2 <= 1e-12
-        lost_digits_lengths_49 = not within_49
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (not lost_digits_lengths_49):
+        if not (not lost_digits_q2):
             return ()
         # rotation by q2 that takes the arm to its target point
         along_q2 = arm_across_q2 * wrist_z_from_q1 + arm_along_q2 * wrist_x_from_q1

@@ -25,8 +25,9 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle, mid_a1, mid_a2 = k.machine_scale_times_free_angle, k.mid_a1, k.mid_a2
     mid_a3, mid_a4, mid_a5, mid_a6, offset_a1 = k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6, k.offset_a1
     offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-    offset_a6, one_by_machine_scale, product_in_away_q2 = k.offset_a6, k.one_by_machine_scale, k.product_in_away_q2
-    product_in_lost_digits_23, rounding_q1, single_a1 = k.product_in_lost_digits_23, k.rounding_q1, k.single_a1
+    offset_a6, one_by_machine_scale = k.offset_a6, k.one_by_machine_scale
+    product_in_length_difference_q2 = k.product_in_length_difference_q2
+    product_in_lost_digits_q3, rounding_q1, single_a1 = k.product_in_lost_digits_q3, k.rounding_q1, k.single_a1
     single_a2, single_a3, single_a4, single_a5 = k.single_a2, k.single_a3, k.single_a4, k.single_a5
     single_a6 = k.single_a6
     angle_in_angle_q3_front_down = arctan2(d4 / effective_q3 + 0.0, a3 / effective_q3 + 0.0)
@@ -62,10 +63,9 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = one_less_cos_q3_front + one_plus_cos_q3_front
         divisor_of_cos_q3_front = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front) / divisor_of_cos_q3_front
-        within_23 = -1.0 <= cos_swing_q3_front <= 1.0
-        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3_front) > 1.0)
         # digits may be lost
-        if not (not lost_digits_23):
+        if not (not lost_digits_q3):
             return ()
         wrist_x_from_q1_back = -a1 - ahead_q1  # coordinate of the point that the remaining links must reach
         # distance that the remaining links must span
@@ -78,50 +78,47 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = one_less_cos_q3_back + one_plus_cos_q3_back
         divisor_of_cos_q3_back = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back) / divisor_of_cos_q3_back
-        within_23 = -1.0 <= cos_swing_q3_back <= 1.0
-        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3_back) > 1.0)
         # digits may be lost
-        if not (not lost_digits_23):
+        if not (not lost_digits_q3):
             return ()
         sine_square_q3 = one_less_cos_q3_front * one_plus_cos_q3_front  # sine squared, times the squared scale
         sin_swing_q3_front_up = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_front
         arm_along_q2_front_down = effective_q3 * sin_swing_q3_front_up
         arm_across_q2_front = a2 + effective_q3 * cos_swing_q3_front
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_front > product_in_lost_digits_23
+            if reach_front > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_front * arm_across_q2_front
                 + arm_along_q2_front_down * arm_along_q2_front_down
                 - reach_front * reach_front
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_front)
+            / (product_in_length_difference_q2 + reach_front)
         )
-        within_36 = away_q2 <= 1e-12
-        lost_digits_lengths_36 = not within_36
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # digits may be lost
-        if not ((not lost_digits_lengths_36) and (not lost_digits_lengths_36)):
+        if not ((not lost_digits_q2) and (not lost_digits_q2)):
             return ()
         sine_square_q3 = one_less_cos_q3_back * one_plus_cos_q3_back  # sine squared, times the squared scale
         sin_swing_q3_back_up = 2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) / divisor_of_cos_q3_back
         arm_along_q2_back_down = effective_q3 * sin_swing_q3_back_up
         arm_across_q2_back = a2 + effective_q3 * cos_swing_q3_back
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach_back > product_in_lost_digits_23
+            if reach_back > product_in_lost_digits_q3
             else abs(
                 arm_across_q2_back * arm_across_q2_back
                 + arm_along_q2_back_down * arm_along_q2_back_down
                 - reach_back * reach_back
             )
             * one_by_machine_scale
-            / (product_in_away_q2 + reach_back)
+            / (product_in_length_difference_q2 + reach_back)
         )
-        within_36 = away_q2 <= 1e-12
-        lost_digits_lengths_36 = not within_36
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # digits may be lost
-        if not ((not lost_digits_lengths_36) and (not lost_digits_lengths_36)):
+        if not ((not lost_digits_q2) and (not lost_digits_q2)):
             return ()
         refusal_front = 0 if -1.0000000000005 <= cos_swing_q3_front <= 1.0000000000005 else 3  # q3: out of reach
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
@@ -548,10 +545,9 @@ def unrolled(k: Constants) -> Unrolled:
         sum_q3 = one_less_cos_q3 + one_plus_cos_q3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_q3 = sum_q3 if sum_q3 > 0.0 else 1.0
         cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3) / divisor_of_cos_q3
-        within_23 = -1.0 <= cos_swing_q3 <= 1.0
-        lost_digits_23 = (not within_23) and (abs(ahead_q1) <= product_in_lost_digits_23)
+        lost_digits_q3 = (abs(ahead_q1) <= product_in_lost_digits_q3) and (abs(cos_swing_q3) > 1.0)
         # digits may be lost
-        if not (not lost_digits_23):
+        if not (not lost_digits_q3):
             return ()
         # q3: out of reach
         if not (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005):
@@ -560,17 +556,16 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_q3 = -2.0 * (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_q3
         arm_along_q2 = -effective_q3 * sin_swing_q3
         arm_across_q2 = a2 + effective_q3 * cos_swing_q3
-        away_q2 = (
+        length_difference_q2 = (
             0.0
-            if reach > product_in_lost_digits_23
+            if reach > product_in_lost_digits_q3
             else abs(arm_across_q2 * arm_across_q2 + arm_along_q2 * arm_along_q2 - reach * reach)
             * one_by_machine_scale
-            / (product_in_away_q2 + reach)
+            / (product_in_length_difference_q2 + reach)
         )
-        within_36 = away_q2 <= 1e-12
-        lost_digits_lengths_36 = not within_36
+        lost_digits_q2 = length_difference_q2 > 1e-12
         # digits may be lost
-        if not (not lost_digits_lengths_36):
+        if not (not lost_digits_q2):
             return ()
         # rotation by q1 that points the arm at the point; at a singularity: the angle of the reference
         if distance_q1 > machine_scale_times_free_angle:

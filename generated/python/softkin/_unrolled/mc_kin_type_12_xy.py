@@ -29,7 +29,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_5_times_shortest_link, lowest_a1 = k.link_length_5_times_shortest_link, k.lowest_a1
     lowest_a2, machine_scale_times_plane, mid_a1 = k.lowest_a2, k.machine_scale_times_plane, k.mid_a1
     mid_a2, min_type2_margin, offset_a1, offset_a2 = k.mid_a2, k.min_type2_margin, k.offset_a1, k.offset_a2
-    one_by_link_length_2, product_in_branch_w = k.one_by_link_length_2, k.product_in_branch_w
+    one_by_link_length_2, product_in_branch_crank = k.one_by_link_length_2, k.product_in_branch_crank
     quotient_in_type2_arms_aligned, single_a1 = k.quotient_in_type2_arms_aligned, k.single_a1
     single_a2, sum_in_pivot_rear_x, swap_xy = k.single_a2, k.sum_in_pivot_rear_x, k.swap_xy
     no_offsets = not any((offset_a1, offset_a2))
@@ -76,13 +76,13 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = (cos_swing_a1_times_span_upper_x - sin_swing_a1_right_times_span_upper_y) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
         link_length_2_times_span_rear_x = link_length_2 * span_rear_x
-        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_crank * sin_a1) * one_by_link_length_2
         cos_swing_a1_times_span_upper_y = span_upper_y * cos_swing_a1
         sin_swing_a1_right_times_span_upper_x = span_upper_x * sin_swing_a1
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y + sin_swing_a1_right_times_span_upper_x) / divisor_a1
         link_length_2_times_span_rear_y = (-link_length_3_by_link_length_2 * span_upper_y) * link_length_2
-        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2_times_span_rear_y)
+        across_a2 = one_by_link_length_2 * (product_in_branch_crank * cos_a1 - link_length_2_times_span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -149,10 +149,10 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_right = 3
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1) * RADIAN
         sin_a1 = (cos_swing_a1_times_span_upper_x + sin_swing_a1_right_times_span_upper_y) / divisor_a1
-        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        along_a2 = (link_length_2_times_span_rear_x - product_in_branch_crank * sin_a1) * one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (cos_swing_a1_times_span_upper_y - sin_swing_a1_right_times_span_upper_x) / divisor_a1
-        across_a2 = one_by_link_length_2 * (product_in_branch_w * cos_a1 - link_length_2_times_span_rear_y)
+        across_a2 = one_by_link_length_2 * (product_in_branch_crank * cos_a1 - link_length_2_times_span_rear_y)
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
@@ -236,7 +236,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        sigma_t, sigma_w = signs
+        sigma_elbow, sigma_crank = signs
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
@@ -268,14 +268,14 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             return None
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
-        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_t / divisor_of_cos_a1
+        sin_swing_a1 = -2.0 * (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0) * sigma_elbow / divisor_of_cos_a1
         sin_a1 = (span_upper_x * cos_swing_a1 + span_upper_y * sin_swing_a1) / divisor_a1
         span_rear_x = -link_length_3_by_link_length_2 * span_upper_x  # rod rear: known part of its vector
-        along_a2 = (link_length_2 * span_rear_x - product_in_branch_w * sin_a1) * one_by_link_length_2
+        along_a2 = (link_length_2 * span_rear_x - product_in_branch_crank * sin_a1) * one_by_link_length_2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a1 = (span_upper_y * cos_swing_a1 - span_upper_x * sin_swing_a1) / divisor_a1
         across_a2 = one_by_link_length_2 * (
-            product_in_branch_w * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y) * link_length_2
+            product_in_branch_crank * cos_a1 - (-link_length_3_by_link_length_2 * span_upper_y) * link_length_2
         )
         # effective length of the arm that a2 turns
         effective_a2 = sqrt(across_a2 * across_a2 + along_a2 * along_a2)
@@ -305,7 +305,7 @@ def unrolled(k: Constants) -> Unrolled:
             centre_1_x = pivot_upper_x
             centre_1_y = -link_length_1 * cos_a1
         sine_square_a2 = one_less_cos_a2 * one_plus_cos_a2  # sine squared, times the squared scale
-        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_w / divisor_of_cos_a2
+        sin_swing_a2 = -2.0 * (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0) * sigma_crank / divisor_of_cos_a2
         # addition theorem: plus the angle of the direction from which the cosine is measured
         cos_a2 = (along_a2 * cos_swing_a2 - across_a2 * sin_swing_a2) / divisor_a2
         # rod rear: centre about which it swings

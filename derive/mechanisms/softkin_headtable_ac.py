@@ -1,0 +1,6 @@
+"""Softkin_HeadTable_AC: five axes, a head that tilts about A over a table that turns about C."""
+
+from derive.five_axes import five_axes
+from derive.mechanism import Vendor
+
+MECHANISM = five_axes("Softkin_HeadTable_AC", head="A", table="C", vendor=Vendor.TEXTBOOK, family="five_axis")
