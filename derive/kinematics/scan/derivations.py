@@ -23,7 +23,7 @@ from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, f
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
-from derive.kinematics.scan.guards import conditions_of, guards_of, room_of
+from derive.kinematics.scan.guards import conditions_of, guards_of, least, room_of
 from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
 from derive.work import stage
@@ -133,11 +133,14 @@ def _trial(
 ) -> Trial:
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])
-    short = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
-    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(short, 1)]
-    statements = with_goal(named_apart((*first, *solved, left, *lengths), "tried"))
+    values = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
+    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(values, 1)]
+    rooms = [room_of(c) for c in conditions_of(solved)]
+    room = Let(real("room"), least(rooms) if rooms else sp.Integer(1))
+    statements = with_goal(named_apart((*first, *solved, left, *lengths, room), "tried"))
     signed = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
-    return trial_of(signed, real("residual_tried"), [real(f"{let.name.name}_tried") for let in lengths])
+    left_over, *short = (real(f"{let.name.name}_tried") for let in (left, *lengths))
+    return trial_of(signed, left_over, short, real("room_tried"))
 
 
 def _sides(

@@ -15,7 +15,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Select
 from derive.ir.program import Call, Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint, about_machine
-from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SIDE, cosine, real, sine
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, cosine, real, sine
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.scan.derivations import (
@@ -29,10 +29,18 @@ from derive.kinematics.scan.derivations import (
     wanted,
 )
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
-from derive.kinematics.scan.parts import part_program
-from derive.kinematics.scan.programs import FOUND, GOAL, LOOKED_FOR, START, finish_program, joints_program
-from derive.kinematics.scan.search import ONWARD, search_program
-from derive.kinematics.scan.settle import settle_program, try_program
+from derive.kinematics.scan.parts import look_program
+from derive.kinematics.scan.programs import (
+    FOUND,
+    GOAL,
+    LOOKED_FOR,
+    START,
+    fits_program,
+    joints_program,
+    step_program,
+)
+from derive.kinematics.scan.search import ONWARD, Steps, search_program
+from derive.kinematics.scan.tried import try_program
 from derive.kinematics.scan.wave import wave_program
 
 
@@ -42,17 +50,25 @@ def branch_statements(both: Scanned) -> tuple[Statement, ...]:
     assert mechanism.search is not None
     program = search_of(both)
     names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
-    call = Call(program, _arguments(both, program), names, f"root scan along {mechanism.search.joint.name}")
+    call = Call(program, _arguments(both, program), names, f"root search along {mechanism.search.joint.name}")
     no_root = about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)
     if both.closed is None:
-        return (call, Require(FOUND, Status.UNREACHABLE, reason=no_root), *_chosen(both))
+        return (_wave(both), call, Require(FOUND, Status.UNREACHABLE, reason=no_root), *_chosen(both))
     return (
         *searched_flag(both),
         *_closed(both, both.closed),
+        _wave(both),
         call,
         Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
         *_chosen(both),
     )
+
+
+def _wave(both: Scanned) -> Call:
+    """The wave, which is the same for all branches."""
+    program, _ = wave_program(both)
+    is_wanted = sp.true if both.closed is None else SEARCHED
+    return Call(program, _arguments(both, program), tuple(real(o.name) for o in program.outputs), wanted=is_wanted)
 
 
 def _closed(both: Scanned, closed: Inverse) -> tuple[Statement, ...]:
@@ -69,10 +85,10 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
     mechanism = both.mechanism
     assert mechanism.search is not None
     given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
-    given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED}
+    given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED, ONWARD: sp.false}
     given |= {wanted(b): sigma(b) for b in mechanism.branches}
     given |= {reference_value(j): reference_value(j) for j in mechanism.joints}
-    given[ONWARD] = sp.false
+    given |= {real(o.name): real(o.name) for o in wave_program(both)[0].outputs}
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
 
@@ -80,7 +96,7 @@ def search_given(both: Scanned) -> Program:
     """The arguments of the scan for all roots of a pose."""
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
-    statements = (*finite(read), *naming_of(both), *searched_flag(both))
+    statements = (*finite(read), *naming_of(both), *searched_flag(both), _wave(both))
     return normalise("search_given", statements, [Output(name.name, value) for name, value in arguments])
 
 
@@ -88,16 +104,17 @@ def search_of(both: Scanned) -> Program:
     """The program that finds the root of a branch, with the programs that it calls."""
     mechanism = both.mechanism
     assert mechanism.search is not None
-    arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
     wave, degree = wave_program(both)
     trial = trial_on_branch(both)
-    tries = try_program(trial)
-    settle = settle_program(tries, (*arguments, SIDE))
-    finish = finish_program(mechanism, margins_wanted(both), DETERMINANT)
-    programs = (wave, part_program(degree), tries, settle, joints_program(mechanism, trial), finish)
-    joints = [j.symbol for j in mechanism.solved_joints], [j.symbol for j in mechanism.joints]
-    is_always = mechanism.search.where is None
-    return search_program(programs, joints, mechanism.search.joint.symbol, arguments, is_always)
+    steps = Steps(
+        look=look_program(degree),
+        trial=try_program(trial),
+        joints_at=joints_program(mechanism, trial),
+        step=step_program(mechanism),
+        fits=fits_program(mechanism, margins_wanted(both), DETERMINANT),
+    )
+    given = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
+    return search_program(mechanism, steps, (*given, *(real(o.name) for o in wave.outputs)))
 
 
 def _chosen(both: Scanned) -> Iterable[Let]:

@@ -11,25 +11,19 @@ from derive.description.mechanism import Mechanism, Turning
 from derive.equations.axes import reference_value
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import (
-    BOUNDARY,
-    CONVERGED,
-    COST_OF_A_STALL,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
-    PASSES,
     SHARE_OF_DAMPING,
-    STALLED,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select, Wrap, larger
-from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
     SCALE,
     cosine,
-    count,
     flag,
     real,
     sine,
@@ -42,7 +36,7 @@ GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_
 """The names of the commanded pose in these programs."""
 AGREEMENT = real("agreement")
 FITS = "fits"
-IS_MET = flag("meets_pose")
+ERROR = real("error")
 _SHRINKING = real("shrinking")
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
@@ -60,6 +54,8 @@ class Trial:
     """The residual, a number without a unit."""
     lengths: tuple[sp.Symbol, ...]
     """Each turns an angle, which turns fast where it is short."""
+    room: sp.Symbol
+    """How far, without a unit, the nearest step is from where its two roots join."""
 
 
 def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
@@ -75,20 +71,48 @@ def begun(joint: sp.Symbol) -> sp.Symbol:
     return real(f"begun_{joint.name}")
 
 
-def finish_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
-    """The program that meets the pose from joints nearby, and tells whether it does, and whether these joints fit: no
-    value in `wanted` may be negative.
+def moved_to(joint: sp.Symbol) -> sp.Symbol:
+    """A joint behind a step on the closure."""
+    return real(f"moved_{joint.name}")
+
+
+def step_program(mechanism: Mechanism) -> Program:
+    """The program that makes one step of damped least squares, J^T (J J^T + d)^-1 e, towards the pose.
+
+    The damping d is a share of the error. What does not change the pose does not move. Next to a double root every
+    step leaves a third of the error.
     """
     joints = [j.symbol for j in mechanism.solved_joints]
-    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
-    loop, jacobian = steps_on_closure(mechanism, [begun(j) for j in joints])
-    last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
-    met = Let(IS_MET, sp.Le(real("error"), CONVERGED))
-    fits = Let(flag(FITS), sp.And(IS_MET, *(sp.Ge(w, -NEARLY) for w in wanted)))
-    outputs = [Output(FITS, fits.name), Output(IS_MET.name, IS_MET)]
-    outputs += [Output(f"joint_{j.symbol.name}", j.symbol) for j in mechanism.joints]
-    program = normalise("finish_root", (*held, loop, last, met, fits), outputs)
-    return replace(program, summary="The joints that meet the pose, and whether they are on the branch")
+    lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
+    composed = named_pose(mechanism)
+    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
+    errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
+    names, agreement = [let.name for let in errors], _agreement(mechanism)
+    squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
+    size = Let(ERROR, Root(sp.Add(*squares)), "pose error, in characteristic lengths and radians")
+    lets, jacobian = _named_jacobian(mechanism)
+    steps = tuple(real(f"step_{j.name}") for j in joints)
+    shortest = _shortest_step(jacobian, names, steps)
+    body = (*_held(mechanism), *composed.statements, *pose, *errors, *agreement, size, *lets, *shortest)
+    moved = [Output(moved_to(j).name, j + _way(j, s, lengths)) for j, s in zip(joints, steps, strict=True)]
+    program = normalise("step_on_closure", body, [Output(ERROR.name, ERROR), *moved])
+    return replace(program, summary="A step of all joints towards the pose, and the error before it")
+
+
+def fits_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
+    """The program that tells whether joints are on the branch: no value in `wanted` is negative."""
+    lets, jacobian = _named_jacobian(mechanism)
+    last = Solve(
+        (), tuple(jacobian), (), determinant, "determinant of the Jacobian, positions in characteristic lengths"
+    )
+    fits = Let(flag(FITS), sp.And(*(sp.Ge(w, -NEARLY) for w in wanted)))
+    body = (*_held(mechanism), *named_pose(mechanism).statements, *lets, last, fits)
+    program = normalise("is_on_branch", body, [Output(FITS, fits.name)])
+    return replace(program, summary="Whether joints are on the wanted branch")
+
+
+def _held(mechanism: Mechanism) -> list[Let]:
+    return [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
 
 
 def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
@@ -98,60 +122,18 @@ def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
     return Atan2(real(f"{sine(joint).name}_tried"), real(f"{cosine(joint).name}_tried"))
 
 
-def steps_on_closure(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
-    """Steps on the closure, those of damped least squares, J^T (J J^T + d)^-1 e, and the Jacobian where they end.
-
-    The damping d is a share of the error. What does not change the pose does not move. Next to a double root every
-    step leaves a third of the error; steps that leave nearly all of it are soon given up.
-    """
-    joints = [j.symbol for j in mechanism.solved_joints]
-    lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
-    composed, (lets, entries) = named_pose(mechanism), solved_entries(mechanism)
-    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
-    scaled = list(scaled_entries(mechanism, entries))
-    errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
-    names = [let.name for let in errors]
-    steps = tuple(real(f"step_{j.name}") for j in joints)
-    error, before, left, cost = real("error"), real("error_before"), count("passes_left"), count("cost")
-    agreement = _agreement(mechanism)
-    squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
-    rates, jacobian = _named_entries(scaled, len(joints))
-    is_last = sp.Or(sp.Gt(2 * error, before), sp.Le(left, 0))
-    is_stalled = sp.Gt(error, STALLED * before)
-    body = (
-        *composed.statements,
-        *pose,
-        *errors,
-        *agreement,
-        Let(error, Root(sp.Add(*squares)), "pose error, in characteristic lengths and radians"),
-        *lets,
-        *rates,
-        *_shortest_step(jacobian, names, steps),
-        Let(cost, Select(is_stalled, sp.Integer(COST_OF_A_STALL), sp.Integer(1))),
-    )
-    loop = Iterate(
-        state=(*joints, before, left),
-        start=(*start, sp.Integer(9), sp.Integer(PASSES)),
-        step=tuple(s for s in body if isinstance(s, Let | Solve)),
-        following=(*(j + _way(j, s, lengths) for j, s in zip(joints, steps, strict=True)), error, left - cost),
-        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.And(sp.Le(error, CONVERGED), is_last), sp.Le(left, 0)),
-        limit=PASSES + 1,
-        otherwise=None,
-        note="steps of damped least squares on the closure",
-    )
-    return loop, tuple(jacobian)
-
-
 def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp.Expr:
     """The step of a joint, within bounds: that of a slide is counted in lengths of the machine."""
     return step * _SHRINKING * (SCALE if joint in lengths else 1)
 
 
-def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], sp.Matrix]:
-    """The statements that bind the entries of the Jacobian, and the Jacobian by their names."""
-    names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(entries)]
-    lets = [Let(name, value) for name, value in zip(names, entries, strict=True) if not value.is_number]
-    return lets, sp.Matrix(len(entries) // width, width, names)
+def _named_jacobian(mechanism: Mechanism) -> tuple[list[Let], sp.Matrix]:
+    """The statements that compute the Jacobian, and the Jacobian by the names of its entries."""
+    lets, entries = solved_entries(mechanism)
+    scaled, width = list(scaled_entries(mechanism, entries)), len(mechanism.solved_joints)
+    names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(scaled)]
+    rates = [Let(name, value) for name, value in zip(names, scaled, strict=True) if not value.is_number]
+    return [*lets, *rates], sp.Matrix(len(scaled) // width, width, names)
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
@@ -164,7 +146,7 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
     damping, length = real("damping"), real("step_length")
     is_long = sp.Gt(length, LONGEST_STEP)
     return [
-        Let(damping, larger(SHARE_OF_DAMPING * real("error"), LEAST_DAMPING)),
+        Let(damping, larger(SHARE_OF_DAMPING * ERROR, LEAST_DAMPING)),
         *(Let(names[i, j], product[i, j] + (damping if i == j else 0)) for i, j in upper),
         Solve(
             multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"
@@ -197,9 +179,9 @@ def _errors(mechanism: Mechanism) -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def trial_of(statements: Sequence[Statement], value: sp.Expr, lengths: Sequence[sp.Symbol]) -> Trial:
+def trial_of(statements: Sequence[Statement], value: sp.Expr, lengths: Sequence[sp.Symbol], room: sp.Symbol) -> Trial:
     """A trial from solved statements."""
-    return Trial(tuple(s for s in statements if isinstance(s, Let)), value, tuple(lengths))
+    return Trial(tuple(s for s in statements if isinstance(s, Let)), value, tuple(lengths), room)
 
 
 def roots_named(statements: Sequence[Let]) -> list[Let]:

@@ -22,6 +22,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import ToReal, larger
 from derive.ir.program import Iterate, Let, Output, Program, Statement
 from derive.ir.symbols import TRIED, count, real
+from derive.kept import kept_by_identity
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import Scanned, trial_of_all_signs
 from derive.kinematics.scan.product import Product, product_of
@@ -31,8 +32,8 @@ from derive.work import stage
 
 BEGIN = sp.Float("0.1")
 """The first angle (radians): a round one may be one at which much vanishes."""
-NOISE = real("noise")
-"""Where the wave is smaller, it is rounding."""
+NOISE, FIFTH = real("noise"), real("bound_of_fifth")
+"""Where the wave is smaller, it is rounding; a bound of its fifth derivative, over 5!."""
 _BEYOND = 2
 """The number of waves beyond the degree."""
 _MORE, _ROUNDING = 32, sp.Float("1e-14")
@@ -45,9 +46,9 @@ def names_of(degree: int) -> list[sp.Symbol]:
     return [*(real(f"wave_cos_{n}") for n in range(degree + 1)), *(real(f"wave_sin_{n}") for n in range(1, degree + 1))]
 
 
-def turned(degree: int, angle: sp.Expr, word: str = "") -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
+def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[sp.Expr]]:
     """The statements that compute cosines and sines of multiples of an angle, up to the degree, and their names."""
-    c, s = ([real(f"{word}{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
+    c, s = ([real(f"{f}_{n}") for n in range(degree + 1)] for f in ("cos", "sin"))
     c[0], s[0] = sp.Integer(1), sp.Integer(0)
     lets = [Let(c[1], sp.cos(angle)), Let(s[1], sp.sin(angle))]
     for n in range(2, degree + 1):
@@ -55,6 +56,7 @@ def turned(degree: int, angle: sp.Expr, word: str = "") -> tuple[list[Let], list
     return lets, c, s
 
 
+@kept_by_identity(4)
 @stage("the wave of a root search")
 def wave_program(both: Scanned) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
@@ -86,11 +88,17 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     )
     own = names_of(degree)
     beyond = [n for n in names if n not in own]
-    outputs = [*(Output(n.name, n) for n in own), Output(NOISE.name, NOISE)]
-    program = normalise("compute_wave", (loop, *_noise(own, beyond)), outputs)
+    fifth = Let(FIFTH, sp.Add(*[_fifth(k, degree) * sp.Abs(n) for k, n in enumerate(own) if k]))
+    outputs = [Output(n.name, n) for n in (*own, NOISE, FIFTH)]
+    program = normalise("compute_wave", (loop, *_noise(own, beyond), fifth), outputs)
     return replace(
         program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
     ), degree
+
+
+def _fifth(place: int, degree: int) -> sp.Expr:
+    """The fifth derivative, over 5!, of the wave of a coefficient, by its place among them."""
+    return sp.Float((place if place <= degree else place - degree) ** 5 / 120)
 
 
 def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:

@@ -191,8 +191,8 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       factor_132_root_1_root_3_part, factor_142_root_1_root_3_part, sin_q23_root_1_root_3_part,
       factor_190_root_1_root_3_part, r12_from_q123_root_1_root_3_part, factor_198_root_1_root_3_part,
       factor_176_root_1_root_3_part, factor_178_root_1_root_3_part, r11_from_q123_root_1_root_3_part,
-      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_297_part,
-      factor_298_part, factor_298_root_1_part, factor_301_root_1_part, factor_150_part,
+      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_301_part,
+      factor_302_part, factor_302_root_1_part, factor_305_root_1_part, factor_150_part,
       product_in_factor_151_part, factor_151_part, product_in_factor_154_part, product_in_factor_154_part_2,
       factor_154_part, factor_156_part, factor_160_part, product_in_factor_161_part, factor_161_part,
       product_in_factor_163_part, factor_163_part, factor_166_part, cos_q23_part, factor_188_root_1_part,
@@ -206,8 +206,8 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       factor_127_part, factor_129_part, factor_132_part, factor_136_part, factor_138_part, factor_140_part,
       factor_142_part, sin_q23_part, factor_190_part, r12_from_q123_part, factor_198_part, factor_174_part,
       factor_178_part, r11_from_q123_part, factor_202_part, r12_from_q123_before_q6_part,
-      factor_304_root_1_part, product_306_root_1_part, factor_308_part, factor_309_part, factor_300_part,
-      factor_301_part, factor_303_part, factor_304_part, product_306_part, factor_310_part, product_311_part,
+      factor_308_root_1_part, product_310_root_1_part, factor_312_part, factor_313_part, factor_304_part,
+      factor_305_part, factor_307_part, factor_308_part, product_310_part, factor_314_part, product_315_part,
       taken, level, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, cos_5, sin_5, cos_6, sin_6, cos_7, sin_7,
       cos_8, sin_8, cos_9, sin_9, cos_10, sin_10;
   for (int pass = 0; pass < 22; pass += 1) {
@@ -341,13 +341,13 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part*sin_q6_tried;
     r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part
         + factor_202_root_1_root_3_part;
-    factor_297_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
+    factor_301_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_1_root_3_part;
-    factor_298_part = factor_297_part
+    factor_302_part = factor_301_part
         + r12_from_q123_before_q6_root_3_part*r12_from_q123_before_q6_root_3_part;
-    factor_298_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
+    factor_302_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_3_part;
-    factor_301_root_1_part = factor_298_part*factor_34_root_1_part + factor_298_root_1_part*factor_34_part;
+    factor_305_root_1_part = factor_302_part*factor_34_root_1_part + factor_302_root_1_part*factor_34_part;
     factor_150_part = -factor_109_root_1_part*product_in_factor_137_root_3_part;
     product_in_factor_151_part = factor_34_part*factor_47_root_3_part;
     factor_151_part = factor_109_root_3_part*product_in_factor_151_part;
@@ -409,18 +409,18 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     r11_from_q123_part = factor_174_part + factor_178_part;
     factor_202_part = r11_from_q123_part*sin_q6_tried;
     r12_from_q123_before_q6_part = factor_198_part + factor_202_part;
-    factor_304_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
-    product_306_root_1_part = factor_304_root_1_part - factor_301_root_1_part;
-    factor_308_part = product_306_root_1_part*product_306_root_1_part;
-    factor_309_part = -factor_308_part*factor_8_part;
-    factor_300_part = -factor_298_root_1_part*product_in_factor_154_part;
-    factor_301_part = factor_300_part + factor_298_part*factor_34_part;
-    factor_303_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
-    factor_304_part = factor_303_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
-    product_306_part = factor_304_part - factor_301_part;
-    factor_310_part = product_306_part*product_306_part;
-    product_311_part = factor_310_part - factor_309_part;
-    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_311_part;
+    factor_308_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
+    product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part;
+    factor_312_part = product_310_root_1_part*product_310_root_1_part;
+    factor_313_part = -factor_312_part*factor_8_part;
+    factor_304_part = -factor_302_root_1_part*product_in_factor_154_part;
+    factor_305_part = factor_304_part + factor_302_part*factor_34_part;
+    factor_307_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
+    factor_308_part = factor_307_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
+    product_310_part = factor_308_part - factor_305_part;
+    factor_314_part = product_310_part*product_310_part;
+    product_315_part = factor_314_part - factor_313_part;
+    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_315_part;
     level = 0.5*taken;
     cos_2 = cos_q6_tried*cos_q6_tried - sin_q6_tried*sin_q6_tried;
     sin_2 = 2.0*cos_q6_tried*sin_q6_tried;
@@ -466,11 +466,18 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     wave_sin_9 = wave_sin_9 + taken*sin_9;
     wave_sin_10 = wave_sin_10 + taken*sin_10;
   }
+  const double sum_in_rounding_0 = fabs(wave_cos_7) + fabs(wave_sin_7);
+  const double sum_in_rounding_0_2 = fabs(wave_cos_3) + fabs(wave_sin_3);
+  const double sum_in_rounding_0_3 = fabs(wave_cos_6) + fabs(wave_sin_6);
+  const double sum_in_rounding_0_4 = fabs(wave_cos_1) + fabs(wave_sin_1);
+  const double sum_in_rounding_0_5 = fabs(wave_cos_2) + fabs(wave_sin_2);
+  const double sum_in_rounding_0_6 = fabs(wave_cos_4) + fabs(wave_sin_4);
+  const double sum_in_rounding_0_7 = fabs(wave_cos_8) + fabs(wave_sin_8);
+  const double sum_in_rounding_0_8 = fabs(wave_cos_5) + fabs(wave_sin_5);
   const double rounding_0 = 1e-14
-      *(fabs(wave_cos_0) + fabs(wave_cos_1) + fabs(wave_cos_2) + fabs(wave_cos_3) + fabs(wave_cos_4)
-      + fabs(wave_cos_5) + fabs(wave_cos_6) + fabs(wave_cos_7) + fabs(wave_cos_8) + fabs(wave_sin_1)
-      + fabs(wave_sin_2) + fabs(wave_sin_3) + fabs(wave_sin_4) + fabs(wave_sin_5) + fabs(wave_sin_6)
-      + fabs(wave_sin_7) + fabs(wave_sin_8));
+      *(sum_in_rounding_0 + sum_in_rounding_0_2 + sum_in_rounding_0_3 + sum_in_rounding_0_4
+      + sum_in_rounding_0_5 + sum_in_rounding_0_6 + sum_in_rounding_0_7 + sum_in_rounding_0_8
+      + fabs(wave_cos_0));
   const double size_of_wave_cos_9_times_32 = 32.0*fabs(wave_cos_9);
   const double rounding_1 = size_of_wave_cos_9_times_32 > rounding_0 ? size_of_wave_cos_9_times_32
       : rounding_0;
@@ -483,6 +490,11 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   const double size_of_wave_sin_10_times_32 = 32.0*fabs(wave_sin_10);
   const double rounding_4 = size_of_wave_sin_10_times_32 > rounding_3 ? size_of_wave_sin_10_times_32
       : rounding_3;
+  const double sum_in_bound_of_fifth = 2.025*sum_in_rounding_0_2 + 64.8*sum_in_rounding_0_3
+      + 0.008333333333333333*sum_in_rounding_0_4 + 0.26666666666666666*sum_in_rounding_0_5
+      + 8.533333333333333*sum_in_rounding_0_6 + 273.06666666666666*sum_in_rounding_0_7
+      + 26.041666666666668*sum_in_rounding_0_8;
+  const double bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334*sum_in_rounding_0;
   found[0] = wave_cos_0;
   found[1] = wave_cos_1;
   found[2] = wave_cos_2;
@@ -501,149 +513,197 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   found[15] = wave_sin_7;
   found[16] = wave_sin_8;
   found[17] = rounding_4;
+  found[18] = bound_of_fifth;
   return SOFTKIN_OK;
 }
 
-/* The next part of the circle in which the wave may be zero. */
-static softkin_status find_part(const void *machine, const double *given, double *found,
+/* Whether the wave is rounding at an angle, and how far it does not vanish from there. */
+static softkin_status find_look_at_wave(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   (void)machine;
   (void)why;
-  const double at = given[0], end = given[1], noise = given[2], wave_cos_0 = given[4], wave_cos_1 = given[5],
-      wave_cos_2 = given[6], wave_cos_3 = given[7], wave_cos_4 = given[8], wave_cos_5 = given[9],
-      wave_cos_6 = given[10], wave_cos_7 = given[11], wave_cos_8 = given[12], wave_sin_1 = given[13],
-      wave_sin_2 = given[14], wave_sin_3 = given[15], wave_sin_4 = given[16], wave_sin_5 = given[17],
-      wave_sin_6 = given[18], wave_sin_7 = given[19], wave_sin_8 = given[20];
-  const int steps_left = (int)given[3];
-  const double sum_in_bound_of_fifth = 0.008333333333333333*(fabs(wave_cos_1) + fabs(wave_sin_1))
-      + 0.26666666666666666*(fabs(wave_cos_2) + fabs(wave_sin_2))
-      + 2.025*(fabs(wave_cos_3) + fabs(wave_sin_3)) + 8.533333333333333*(fabs(wave_cos_4) + fabs(wave_sin_4))
-      + 26.041666666666668*(fabs(wave_cos_5) + fabs(wave_sin_5)) + 64.8*(fabs(wave_cos_6) + fabs(wave_sin_6))
-      + 273.06666666666666*(fabs(wave_cos_8) + fabs(wave_sin_8));
-  const double bound_of_fifth = sum_in_bound_of_fifth
-      + 140.05833333333334*(fabs(wave_cos_7) + fabs(wave_sin_7));
-  /* steps around the circle that pass no zero of the wave */
-  double place_ = at;
-  double width = 0.0;
-  int steps_still_left = steps_left;
-  double angle, cos_1, sin_1, even_1, cos_2, sin_2, even_2, cos_3, sin_3, even_3, cos_4, sin_4, even_4,
-      cos_5, sin_5, even_5, cos_6, sin_6, even_6, cos_7, sin_7, even_7, cos_8, sin_8, even_8, wave,
-      half_noise_minus_size_of_wave, room, odd_1, odd_2, odd_3, odd_4, odd_5, odd_6, odd_7, odd_8, slope,
-      sign_of_wave, sign_of_wave_times_slope, falls_slope, bend, bend_times_sign_of_wave, falls_bend, third,
-      sign_of_wave_times_third, falls_third, fourth, fourth_times_sign_of_wave, falls_fourth, curve_1,
-      falls_slope_squared, divisor_1, twice_room, allowed_1, safe_1, length_1, curve_2, divisor_2, allowed_2,
-      safe_2, long_2, length_2, curve_3, divisor_3, allowed_3, safe_3, long_3, length_3, curve_4, divisor_4,
-      allowed_4, safe_4, long_4, length_4, curve_5, divisor_5, allowed_5, safe_5, long_5, length_5, curve_6,
-      divisor_6, allowed_6, safe_6, way;
-  bool is_rounding, is_over;
-  for (int pass = 0; pass < 1002; pass += 1) {
-    angle = place_ + width;
-    cos_1 = cos(angle);
-    sin_1 = sin(angle);
-    even_1 = wave_cos_1*cos_1 + wave_sin_1*sin_1;
-    cos_2 = cos_1*cos_1 - sin_1*sin_1;
-    sin_2 = 2.0*cos_1*sin_1;
-    even_2 = wave_cos_2*cos_2 + wave_sin_2*sin_2;
-    cos_3 = cos_1*cos_2 - sin_1*sin_2;
-    sin_3 = cos_1*sin_2 + cos_2*sin_1;
-    even_3 = wave_cos_3*cos_3 + wave_sin_3*sin_3;
-    cos_4 = cos_1*cos_3 - sin_1*sin_3;
-    sin_4 = cos_1*sin_3 + cos_3*sin_1;
-    even_4 = wave_cos_4*cos_4 + wave_sin_4*sin_4;
-    cos_5 = cos_1*cos_4 - sin_1*sin_4;
-    sin_5 = cos_1*sin_4 + cos_4*sin_1;
-    even_5 = wave_cos_5*cos_5 + wave_sin_5*sin_5;
-    cos_6 = cos_1*cos_5 - sin_1*sin_5;
-    sin_6 = cos_1*sin_5 + cos_5*sin_1;
-    even_6 = wave_cos_6*cos_6 + wave_sin_6*sin_6;
-    cos_7 = cos_1*cos_6 - sin_1*sin_6;
-    sin_7 = cos_1*sin_6 + cos_6*sin_1;
-    even_7 = wave_cos_7*cos_7 + wave_sin_7*sin_7;
-    cos_8 = cos_1*cos_7 - sin_1*sin_7;
-    sin_8 = cos_1*sin_7 + cos_7*sin_1;
-    even_8 = wave_cos_8*cos_8 + wave_sin_8*sin_8;
-    wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0;
-    is_rounding = fabs(wave) <= noise;
-    is_over = ((place_ >= end) && (width <= 0.0)) || ((width > 0.0) && ((!is_rounding) || (width >= 0.5)));
-    half_noise_minus_size_of_wave = 0.5*noise - fabs(wave);
-    room = -half_noise_minus_size_of_wave > 0.0 ? -half_noise_minus_size_of_wave : 0.0;
-    odd_1 = wave_sin_1*cos_1 - wave_cos_1*sin_1;
-    odd_2 = wave_sin_2*cos_2 - wave_cos_2*sin_2;
-    odd_3 = wave_sin_3*cos_3 - wave_cos_3*sin_3;
-    odd_4 = wave_sin_4*cos_4 - wave_cos_4*sin_4;
-    odd_5 = wave_sin_5*cos_5 - wave_cos_5*sin_5;
-    odd_6 = wave_sin_6*cos_6 - wave_cos_6*sin_6;
-    odd_7 = wave_sin_7*cos_7 - wave_cos_7*sin_7;
-    odd_8 = wave_sin_8*cos_8 - wave_cos_8*sin_8;
-    slope = odd_1 + 2.0*odd_2 + 3.0*odd_3 + 4.0*odd_4 + 5.0*odd_5 + 6.0*odd_6 + 7.0*odd_7 + 8.0*odd_8;
-    sign_of_wave = wave < 0.0 ? -1.0 : 1.0;
-    sign_of_wave_times_slope = sign_of_wave*slope;
-    falls_slope = -sign_of_wave_times_slope > 0.0 ? -sign_of_wave_times_slope : 0.0;
-    bend = -0.5*even_1 - 2.0*even_2 - 4.5*even_3 - 8.0*even_4 - 12.5*even_5 - 18.0*even_6 - 24.5*even_7
-        - 32.0*even_8;
-    bend_times_sign_of_wave = bend*sign_of_wave;
-    falls_bend = -bend_times_sign_of_wave > 0.0 ? -bend_times_sign_of_wave : 0.0;
-    third = -odd_1/6.0 - 4.0*odd_2/3.0 - 4.5*odd_3 - 32.0*odd_4/3.0 - 125.0*odd_5/6.0 - 36.0*odd_6
-        - 343.0*odd_7/6.0 - 256.0*odd_8/3.0;
-    sign_of_wave_times_third = sign_of_wave*third;
-    falls_third = -sign_of_wave_times_third > 0.0 ? -sign_of_wave_times_third : 0.0;
-    fourth = even_1/24.0 + 2.0*even_2/3.0 + 3.375*even_3 + 32.0*even_4/3.0 + 625.0*even_5/24.0 + 54.0*even_6
-        + 2401.0*even_7/24.0 + 512.0*even_8/3.0;
-    fourth_times_sign_of_wave = fourth*sign_of_wave;
-    falls_fourth = -fourth_times_sign_of_wave > 0.0 ? -fourth_times_sign_of_wave : 0.0;
-    curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third;
-    falls_slope_squared = falls_slope*falls_slope;
-    divisor_1 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_1*room);
-    twice_room = 2.0*room;
-    allowed_1 = divisor_1 > twice_room ? 2.0*room/(divisor_1 > twice_room ? divisor_1 : 1.0) : 1.0;
-    safe_1 = allowed_1 > 0.0 ? allowed_1 : 0.0;
-    length_1 = softkin_root(safe_1);
-    curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_1)*length_1)*length_1;
-    divisor_2 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_2*room);
-    allowed_2 = divisor_2*length_1 > twice_room
-        ? 2.0*room/(divisor_2*length_1 > twice_room ? divisor_2 : 1.0) : length_1;
-    safe_2 = allowed_2 > safe_1 ? allowed_2 : safe_1;
-    long_2 = divisor_2*length_1 > twice_room ? length_1 : 1.0;
-    length_2 = softkin_root(long_2*safe_2);
-    curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_2)*length_2)*length_2;
-    divisor_3 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_3*room);
-    allowed_3 = divisor_3*length_2 > twice_room
-        ? 2.0*room/(divisor_3*length_2 > twice_room ? divisor_3 : 1.0) : length_2;
-    safe_3 = allowed_3 > safe_2 ? allowed_3 : safe_2;
-    long_3 = divisor_3*length_2 > twice_room ? length_2 : long_2;
-    length_3 = softkin_root(long_3*safe_3);
-    curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_3)*length_3)*length_3;
-    divisor_4 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_4*room);
-    allowed_4 = divisor_4*length_3 > twice_room
-        ? 2.0*room/(divisor_4*length_3 > twice_room ? divisor_4 : 1.0) : length_3;
-    safe_4 = allowed_4 > safe_3 ? allowed_4 : safe_3;
-    long_4 = divisor_4*length_3 > twice_room ? length_3 : long_3;
-    length_4 = softkin_root(long_4*safe_4);
-    curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_4)*length_4)*length_4;
-    divisor_5 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_5*room);
-    allowed_5 = divisor_5*length_4 > twice_room
-        ? 2.0*room/(divisor_5*length_4 > twice_room ? divisor_5 : 1.0) : length_4;
-    safe_5 = allowed_5 > safe_4 ? allowed_5 : safe_4;
-    long_5 = divisor_5*length_4 > twice_room ? length_4 : long_4;
-    length_5 = softkin_root(long_5*safe_5);
-    curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth*length_5)*length_5)*length_5;
-    divisor_6 = falls_slope + softkin_root(falls_slope_squared + 4.0*curve_6*room);
-    allowed_6 = divisor_6*length_5 > twice_room
-        ? 2.0*room/(divisor_6*length_5 > twice_room ? divisor_6 : 1.0) : length_5;
-    safe_6 = allowed_6 > safe_5 ? allowed_6 : safe_5;
-    way = is_rounding || (width > 0.0) ? 0.0 : (safe_6 > 1e-15 ? safe_6 : 1e-15);
-    if (is_over || (steps_still_left <= 0)) {
-      break;
-    }
-    place_ = place_ + way;
-    width = (width > 0.0 ? 2.0*width : (is_rounding ? 1e-13 : 0.0));
-    steps_still_left = steps_still_left - 1;
+  const double ahead_by = given[0], bound_of_fifth = given[1], noise = given[3], start_ = given[4],
+      wave_cos_0 = given[5], wave_cos_1 = given[6], wave_cos_2 = given[7], wave_cos_3 = given[8],
+      wave_cos_4 = given[9], wave_cos_5 = given[10], wave_cos_6 = given[11], wave_cos_7 = given[12],
+      wave_cos_8 = given[13], wave_sin_1 = given[14], wave_sin_2 = given[15], wave_sin_3 = given[16],
+      wave_sin_4 = given[17], wave_sin_5 = given[18], wave_sin_6 = given[19], wave_sin_7 = given[20],
+      wave_sin_8 = given[21];
+  const int direction = (int)given[2];
+  const double real_of_direction = direction;
+  const double sum_in_cos_1 = start_ + ahead_by*real_of_direction;
+  const double cos_1 = cos(sum_in_cos_1);
+  const double sin_1 = sin(sum_in_cos_1);
+  const double even_1 = wave_cos_1*cos_1 + wave_sin_1*sin_1;
+  const double cos_2 = cos_1*cos_1 - sin_1*sin_1;
+  const double sin_2 = 2.0*cos_1*sin_1;
+  const double even_2 = wave_cos_2*cos_2 + wave_sin_2*sin_2;
+  const double cos_3 = cos_1*cos_2 - sin_1*sin_2;
+  const double sin_3 = cos_1*sin_2 + cos_2*sin_1;
+  const double even_3 = wave_cos_3*cos_3 + wave_sin_3*sin_3;
+  const double cos_4 = cos_1*cos_3 - sin_1*sin_3;
+  const double sin_4 = cos_1*sin_3 + cos_3*sin_1;
+  const double even_4 = wave_cos_4*cos_4 + wave_sin_4*sin_4;
+  const double cos_5 = cos_1*cos_4 - sin_1*sin_4;
+  const double sin_5 = cos_1*sin_4 + cos_4*sin_1;
+  const double even_5 = wave_cos_5*cos_5 + wave_sin_5*sin_5;
+  const double cos_6 = cos_1*cos_5 - sin_1*sin_5;
+  const double sin_6 = cos_1*sin_5 + cos_5*sin_1;
+  const double even_6 = wave_cos_6*cos_6 + wave_sin_6*sin_6;
+  const double cos_7 = cos_1*cos_6 - sin_1*sin_6;
+  const double sin_7 = cos_1*sin_6 + cos_6*sin_1;
+  const double even_7 = wave_cos_7*cos_7 + wave_sin_7*sin_7;
+  const double cos_8 = cos_1*cos_7 - sin_1*sin_7;
+  const double sin_8 = cos_1*sin_7 + cos_7*sin_1;
+  const double even_8 = wave_cos_8*cos_8 + wave_sin_8*sin_8;
+  const double wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0;
+  const bool is_rounding = fabs(wave) <= noise;
+  const double odd_1 = wave_sin_1*cos_1 - wave_cos_1*sin_1;
+  const double odd_2 = wave_sin_2*cos_2 - wave_cos_2*sin_2;
+  const double odd_3 = wave_sin_3*cos_3 - wave_cos_3*sin_3;
+  const double odd_4 = wave_sin_4*cos_4 - wave_cos_4*sin_4;
+  const double odd_5 = wave_sin_5*cos_5 - wave_cos_5*sin_5;
+  const double odd_6 = wave_sin_6*cos_6 - wave_cos_6*sin_6;
+  const double odd_7 = wave_sin_7*cos_7 - wave_cos_7*sin_7;
+  const double odd_8 = wave_sin_8*cos_8 - wave_cos_8*sin_8;
+  const double slope = (odd_1 + 2.0*odd_2 + 3.0*odd_3 + 4.0*odd_4 + 5.0*odd_5 + 6.0*odd_6 + 7.0*odd_7
+      + 8.0*odd_8)*real_of_direction;
+  const double sign_of_wave = wave < 0.0 ? -1.0 : 1.0;
+  const double falls_slope = -sign_of_wave*slope;
+  const double bend = -0.5*even_1 - 2.0*even_2 - 4.5*even_3 - 8.0*even_4 - 12.5*even_5 - 18.0*even_6
+      - 24.5*even_7 - 32.0*even_8;
+  const double bend_times_sign_of_wave = bend*sign_of_wave;
+  const double falls_bend = -bend_times_sign_of_wave > 0.0 ? -bend_times_sign_of_wave : 0.0;
+  const double third = (-odd_1/6.0 - 4.0*odd_2/3.0 - 4.5*odd_3 - 32.0*odd_4/3.0 - 125.0*odd_5/6.0
+      - 36.0*odd_6 - 343.0*odd_7/6.0 - 256.0*odd_8/3.0)*real_of_direction;
+  const double sign_of_wave_times_third = sign_of_wave*third;
+  const double falls_third = -sign_of_wave_times_third > 0.0 ? -sign_of_wave_times_third : 0.0;
+  const double fourth = even_1/24.0 + 2.0*even_2/3.0 + 3.375*even_3 + 32.0*even_4/3.0 + 625.0*even_5/24.0
+      + 54.0*even_6 + 2401.0*even_7/24.0 + 512.0*even_8/3.0;
+  const double fourth_times_sign_of_wave = fourth*sign_of_wave;
+  const double falls_fourth = -fourth_times_sign_of_wave > 0.0 ? -fourth_times_sign_of_wave : 0.0;
+  const double curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third;
+  const double half_noise_minus_size_of_wave = 0.5*noise - fabs(wave);
+  const double room = -half_noise_minus_size_of_wave > 0.0 ? -half_noise_minus_size_of_wave : 0.0;
+  const double falls_slope_squared = falls_slope*falls_slope;
+  const double root_1 = softkin_root(falls_slope_squared + 4.0*curve_1*room);
+  const double twice_room = 2.0*room;
+  double value_in_allowed_1, value_in_allowed_1_2;
+  if (falls_slope > 0.0) {
+    value_in_allowed_1 = falls_slope + root_1;
+    value_in_allowed_1_2 = twice_room;
+  } else {
+    value_in_allowed_1 = 2.0*curve_1;
+    value_in_allowed_1_2 = root_1 - falls_slope;
   }
-  const bool is_part = is_over && (width > 0.0);
-  found[0] = (is_part ? place_ : end);
-  found[1] = (is_part ? angle : end);
-  found[2] = is_part;
-  found[3] = steps_still_left;
+  double safe_1;
+  if (value_in_allowed_1 > value_in_allowed_1_2) {
+    const double allowed_1 = value_in_allowed_1_2/value_in_allowed_1;
+    safe_1 = allowed_1 > 0.0 ? allowed_1 : 0.0;
+  } else {
+    safe_1 = 1.0;
+  }
+  const double length_1 = softkin_root(safe_1);
+  const double curve_2 = falls_bend
+      + (falls_third + (falls_fourth + bound_of_fifth*length_1)*length_1)*length_1;
+  const double root_2 = softkin_root(falls_slope_squared + 4.0*curve_2*room);
+  double value_in_long_2, value_in_long_2_2;
+  if (falls_slope > 0.0) {
+    value_in_long_2 = falls_slope + root_2;
+    value_in_long_2_2 = twice_room;
+  } else {
+    value_in_long_2 = 2.0*curve_2;
+    value_in_long_2_2 = root_2 - falls_slope;
+  }
+  double allowed_2, long_2;
+  if (length_1*value_in_long_2 > value_in_long_2_2) {
+    allowed_2 = value_in_long_2_2/value_in_long_2;
+    long_2 = length_1;
+  } else {
+    allowed_2 = length_1;
+    long_2 = 1.0;
+  }
+  const double safe_2 = allowed_2 > safe_1 ? allowed_2 : safe_1;
+  const double length_2 = softkin_root(long_2*safe_2);
+  const double curve_3 = falls_bend
+      + (falls_third + (falls_fourth + bound_of_fifth*length_2)*length_2)*length_2;
+  const double root_3 = softkin_root(falls_slope_squared + 4.0*curve_3*room);
+  double value_in_long_3, value_in_long_3_2;
+  if (falls_slope > 0.0) {
+    value_in_long_3 = falls_slope + root_3;
+    value_in_long_3_2 = twice_room;
+  } else {
+    value_in_long_3 = 2.0*curve_3;
+    value_in_long_3_2 = root_3 - falls_slope;
+  }
+  double allowed_3, long_3;
+  if (length_2*value_in_long_3 > value_in_long_3_2) {
+    allowed_3 = value_in_long_3_2/value_in_long_3;
+    long_3 = length_2;
+  } else {
+    allowed_3 = length_2;
+    long_3 = long_2;
+  }
+  const double safe_3 = allowed_3 > safe_2 ? allowed_3 : safe_2;
+  const double length_3 = softkin_root(long_3*safe_3);
+  const double curve_4 = falls_bend
+      + (falls_third + (falls_fourth + bound_of_fifth*length_3)*length_3)*length_3;
+  const double root_4 = softkin_root(falls_slope_squared + 4.0*curve_4*room);
+  double value_in_long_4, value_in_long_4_2;
+  if (falls_slope > 0.0) {
+    value_in_long_4 = falls_slope + root_4;
+    value_in_long_4_2 = twice_room;
+  } else {
+    value_in_long_4 = 2.0*curve_4;
+    value_in_long_4_2 = root_4 - falls_slope;
+  }
+  double allowed_4, long_4;
+  if (length_3*value_in_long_4 > value_in_long_4_2) {
+    allowed_4 = value_in_long_4_2/value_in_long_4;
+    long_4 = length_3;
+  } else {
+    allowed_4 = length_3;
+    long_4 = long_3;
+  }
+  const double safe_4 = allowed_4 > safe_3 ? allowed_4 : safe_3;
+  const double length_4 = softkin_root(long_4*safe_4);
+  const double curve_5 = falls_bend
+      + (falls_third + (falls_fourth + bound_of_fifth*length_4)*length_4)*length_4;
+  const double root_5 = softkin_root(falls_slope_squared + 4.0*curve_5*room);
+  double value_in_long_5, value_in_long_5_2;
+  if (falls_slope > 0.0) {
+    value_in_long_5 = falls_slope + root_5;
+    value_in_long_5_2 = twice_room;
+  } else {
+    value_in_long_5 = 2.0*curve_5;
+    value_in_long_5_2 = root_5 - falls_slope;
+  }
+  double allowed_5, long_5;
+  if (length_4*value_in_long_5 > value_in_long_5_2) {
+    allowed_5 = value_in_long_5_2/value_in_long_5;
+    long_5 = length_4;
+  } else {
+    allowed_5 = length_4;
+    long_5 = long_4;
+  }
+  const double safe_5 = allowed_5 > safe_4 ? allowed_5 : safe_4;
+  const double length_5 = softkin_root(long_5*safe_5);
+  const double curve_6 = falls_bend
+      + (falls_third + (falls_fourth + bound_of_fifth*length_5)*length_5)*length_5;
+  const double root_6 = softkin_root(falls_slope_squared + 4.0*curve_6*room);
+  double value_in_allowed_6, value_in_allowed_6_2;
+  if (falls_slope > 0.0) {
+    value_in_allowed_6 = falls_slope + root_6;
+    value_in_allowed_6_2 = twice_room;
+  } else {
+    value_in_allowed_6 = 2.0*curve_6;
+    value_in_allowed_6_2 = root_6 - falls_slope;
+  }
+  const double allowed_6 = length_5*value_in_allowed_6 > value_in_allowed_6_2
+      ? value_in_allowed_6_2/(length_5*value_in_allowed_6 > value_in_allowed_6_2 ? value_in_allowed_6 : 1.0)
+      : length_5;
+  const double safe_6 = allowed_6 > safe_5 ? allowed_6 : safe_5;
+  found[0] = is_rounding;
+  found[1] = (safe_6 > 1e-15 ? safe_6 : 1e-15);
   return SOFTKIN_OK;
 }
 
@@ -817,164 +877,14 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       + r12_from_q1_tried*slope_cos_q23_tried - goal_r32*slope_sin_q23_tried;
   const double slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried)
       *cos_q6_tried + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried;
+  const double room_tried = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried;
   found[0] = -r12_from_q123_before_q6_tried;
   found[1] = -slope_r12_from_q123_before_q6_tried;
-  found[2] = distance_q1_tried;
-  found[3] = distance_q1_tried*slope_distance_q1_tried;
-  found[4] = reach_tried;
-  found[5] = reach_tried*slope_reach_tried;
-  return SOFTKIN_OK;
-}
-
-/* Where a length that turns an angle is shortest, and how far beside it turns by a sixth. */
-static softkin_status find_shortest(const void *machine, const double *given, double *found,
-    softkin_refusal *why) {
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
-      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], high = given[12],
-      low = given[13], reference_a1 = given[14], reference_a2 = given[15];
-  const int side = (int)given[16], wanted_elbow = (int)given[17], wanted_shoulder = (int)given[18],
-      which_length = (int)given[19];
-  const double high_minus_low = high - low;
-  const double high_minus_low_times_1_by_32 = high_minus_low/32.0;
-  /* where the length is shortest */
-  double place_ = low;
-  double best_place = low;
-  double least = 1e30;
-  double last_place = low;
-  double growth_before = 0.0;
-  double bend = 0.0;
-  int steps = 0;
-  double length_1, growth_1, length_2, growth_2, growth, length, best_now, gap, way, bend_now, bend_now_2,
-      place_minus_growth_by_bend_now, sum_in_next_place, next_place, shared_value;
-  bool is_less;
-  for (int pass = 0; pass < 22; pass += 1) {
-    double results[6];
-    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-        goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, place_, wanted_elbow,
-        wanted_shoulder};
-    const softkin_status status = find_try_joint(k, arguments, results, why);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
-    length_1 = results[2];
-    growth_1 = results[3];
-    length_2 = results[4];
-    growth_2 = results[5];
-    growth = which_length == 2 ? growth_2 : growth_1;
-    length = which_length == 2 ? length_2 : length_1;
-    is_less = length < least;
-    best_now = is_less ? place_ : best_place;
-    gap = growth - growth_before;
-    way = place_ - last_place;
-    bend_now = (steps > 9) && (gap*way > 0.0) ? gap/(gap*way > 0.0 ? way : 1.0) : bend;
-    bend_now_2 = bend_now > 0.0 ? bend_now : 1.0;
-    place_minus_growth_by_bend_now = place_ - growth/bend_now_2;
-    sum_in_next_place = best_now + high_minus_low_times_1_by_32;
-    next_place = steps < 8 ? low + 0.125*(1.0 + steps)*high_minus_low
-        : (steps < 9 ? best_now : (steps == 9
-        ? (sum_in_next_place > high ? best_now - high_minus_low_times_1_by_32 : sum_in_next_place)
-        : (place_minus_growth_by_bend_now < low ? low
-        : (place_minus_growth_by_bend_now > high ? high : place_minus_growth_by_bend_now))));
-    shared_value = is_less ? length : least;
-    if (steps >= 21) {
-      break;
-    }
-    place_ = next_place;
-    best_place = best_now;
-    least = shared_value;
-    last_place = last_place + way;
-    growth_before = growth;
-    bend = bend_now;
-    steps = 1 + steps;
-  }
-  found[0] = best_now;
-  found[1] = (bend_now > 0.0 ? 1.7*shared_value/softkin_root(bend_now_2) : 0.0);
-  return SOFTKIN_OK;
-}
-
-/* The joint value next to a start at which the residual is smallest. */
-static softkin_status find_settle_joint(const void *machine, const double *given, double *found,
-    softkin_refusal *why) {
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
-      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], high = given[12],
-      low = given[13], reference_a1 = given[14], reference_a2 = given[15];
-  const int side = (int)given[16], start_number = (int)given[17], wanted_elbow = (int)given[18],
-      wanted_shoulder = (int)given[19];
-  const bool is_at_length = start_number > 9;
-  double results[2] = {0.0};
-  if (is_at_length) {
-    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-        goal_r32, goal_r33, goal_x, goal_y, goal_z, high, low, reference_a1, reference_a2, side,
-        wanted_elbow, wanted_shoulder, (start_number > 12 ? 2 : 1)};
-    const softkin_status status = find_shortest(k, arguments, results, why);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
-  }
-  const double shortest_place = results[0], aside = results[1];
-  const double part_width = high - low;
-  double start_of_steps;
-  if (is_at_length) {
-    const double sum_in_start_of_steps = shortest_place
-        + ((start_number == 11 ? 1.0 : (start_number == 12 ? -1.0 : 0.0))
-        + (start_number == 14 ? 1.0 : (start_number == 15 ? -1.0 : 0.0)))*aside;
-    start_of_steps = sum_in_start_of_steps < low ? low
-        : (sum_in_start_of_steps > high ? high : sum_in_start_of_steps);
-  } else {
-    const double value_in_start_of_steps = start_number == 9 ? 0.875
-        : (start_number == 8 ? 0.625
-        : (start_number == 7 ? 0.375
-        : (start_number == 6 ? 0.125
-        : (start_number == 5 ? 0.75
-        : (start_number == 4 ? 0.25 : (start_number == 3 ? 1.0 : (start_number == 2 ? 0.0 : 0.5)))))));
-    start_of_steps = low + part_width*value_in_start_of_steps;
-  }
-  /* Newton's method on the residual of the branch */
-  double place_ = start_of_steps;
-  double best_place = start_of_steps;
-  double least = 1e30;
-  double way = 0.0;
-  double share = 1.0;
-  int steps = 0;
-  double remainder, slope, size, best_now, way_now, share_now, best_now_minus_share_now_times_way_now,
-      next_place, least_now;
-  bool is_less;
-  for (int pass = 0; pass < 25; pass += 1) {
-    double results_of_2[6];
-    const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-        goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side, place_, wanted_elbow,
-        wanted_shoulder};
-    const softkin_status status_of_2 = find_try_joint(k, arguments_of_2, results_of_2, why);
-    if (status_of_2 != SOFTKIN_OK) {
-      return status_of_2;
-    }
-    remainder = results_of_2[0];
-    slope = results_of_2[1];
-    size = fabs(remainder);
-    is_less = size < least;
-    best_now = is_less ? place_ : best_place;
-    way_now = is_less ? remainder/(fabs(slope) > 0.0 ? slope : 1e30) : way;
-    share_now = is_less ? 1.0 : 0.25*share;
-    best_now_minus_share_now_times_way_now = best_now - share_now*way_now;
-    next_place = best_now_minus_share_now_times_way_now < low ? low
-        : (best_now_minus_share_now_times_way_now > high ? high : best_now_minus_share_now_times_way_now);
-    least_now = is_less ? size : least;
-    if ((part_width <= 1e-9) || (steps >= 24) || (fabs(next_place - place_) <= 0.0)) {
-      break;
-    }
-    place_ = next_place;
-    best_place = best_now;
-    least = least_now;
-    way = way_now;
-    share = share_now;
-    steps = 1 + steps;
-  }
-  found[0] = best_now;
-  found[1] = least_now;
+  found[2] = room_tried;
+  found[3] = distance_q1_tried;
+  found[4] = distance_q1_tried*slope_distance_q1_tried;
+  found[5] = reach_tried;
+  found[6] = reach_tried*slope_reach_tried;
   return SOFTKIN_OK;
 }
 
@@ -1080,436 +990,595 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* The joints that meet the pose, and whether they are on the branch. */
-static softkin_status find_finish_root(const void *machine, const double *given, double *found,
+/* A step of all joints towards the pose, and the error before it. */
+static softkin_status find_step_on_closure(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   (void)why;
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double begun_q1 = given[0], begun_q2 = given[1], begun_q3 = given[2], begun_q4 = given[3],
-      begun_q5 = given[4], begun_q6 = given[5], goal_r11 = given[6], goal_r12 = given[7],
-      goal_r13 = given[8], goal_r21 = given[9], goal_r22 = given[10], goal_r23 = given[11],
-      goal_r31 = given[12], goal_r32 = given[13], goal_r33 = given[14], goal_x = given[15],
-      goal_y = given[16], goal_z = given[17];
-  const int wanted_crossing = (int)given[18], wanted_elbow = (int)given[19],
-      wanted_shoulder = (int)given[20], wanted_wrist = (int)given[21];
-  /* steps of damped least squares on the closure */
-  double q1 = begun_q1;
-  double q2 = begun_q2;
-  double q3 = begun_q3;
-  double q4 = begun_q4;
-  double q5 = begun_q5;
-  double q6 = begun_q6;
-  double error_before = 9.0;
-  int passes_left = 64;
-  double cos_q1, q2_plus_q3, cos_q23, r11_at_q23, sin_q1, sin_q23, r13_at_q23, sin_q4, cos_q4, r13_at_q4,
-      sin_q5, cos_q5, r13_at_q5, x_at_q2, sin_q2, r13_at_q2, x_at_q3, x_at_q4, x_at_q5, r11_at_q5, x_at_q6,
-      x, error_1, r21_at_q23, r23_at_q23, r23_at_q4, r23_at_q5, y_at_q2, r23_at_q2, y_at_q3, y_at_q4,
-      y_at_q5, r21_at_q5, y_at_q6, y, error_2, r33_at_q4, r33_at_q5, cos_q2, z_at_q3, z_at_q4, z_at_q5,
-      r31_at_q5, z_at_q6, z, error_3, r22_at_q4, sin_q6, cos_q6, r21_at_q6, r32_at_q4, r31_at_q6, r22_at_q6,
-      r32_at_q6, error_4, r12_at_q4, r11_at_q6, r12_at_q6, error_5, error_6, agreement, error, rate_1_1,
-      rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3,
-      z_minus_z_at_q4, y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5,
-      z_minus_z_at_q6, y_minus_y_at_q6, rate_1_6, product_in_damping, damping, product_1_1,
-      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5,
-      rate_2_5, x_minus_x_at_q6, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
-      product_1_3, rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
-      rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
-      product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
-      product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
-      step_q1, sum_in_step_q2, step_q2, step_q3, step_q4, step_q5, step_q6, step_length, shrinking;
-  int cost;
-  bool meets_pose;
-  for (int pass = 0; pass < 65; pass += 1) {
-    cos_q1 = cos(q1);
-    q2_plus_q3 = q2 + q3;
-    cos_q23 = cos(q2_plus_q3);
-    r11_at_q23 = cos_q1*cos_q23;
-    sin_q1 = sin(q1);
-    sin_q23 = sin(q2_plus_q3);
-    r13_at_q23 = cos_q1*sin_q23;
-    sin_q4 = sin(q4);
-    cos_q4 = cos(q4);
-    r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
-    sin_q5 = sin(q5);
-    cos_q5 = cos(q5);
-    r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
-    x_at_q2 = k->a1*cos_q1;
-    sin_q2 = sin(q2);
-    r13_at_q2 = cos_q1*sin_q2;
-    x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-    x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
-    x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
-    r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-    x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
-    x = x_at_q6 + k->d6*r13_at_q5;
-    error_1 = (goal_x - x)*k->one_by_machine_scale;
-    r21_at_q23 = cos_q23*sin_q1;
-    r23_at_q23 = sin_q1*sin_q23;
-    r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
-    r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
-    y_at_q2 = k->a1*sin_q1;
-    r23_at_q2 = sin_q1*sin_q2;
-    y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-    y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
-    y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
-    r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-    y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
-    y = y_at_q6 + k->d6*r23_at_q5;
-    error_2 = (goal_y - y)*k->one_by_machine_scale;
-    r33_at_q4 = cos_q23*cos_q4;
-    r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
-    cos_q2 = cos(q2);
-    z_at_q3 = k->d1 + k->a2*cos_q2;
-    z_at_q4 = z_at_q3 + k->a3*cos_q23;
-    z_at_q5 = z_at_q4 - k->d4*sin_q23;
-    r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-    z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
-    z = z_at_q6 + k->d6*r33_at_q5;
-    error_3 = (goal_z - z)*k->one_by_machine_scale;
-    r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
-    sin_q6 = sin(q6);
-    cos_q6 = cos(q6);
-    r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
-    r32_at_q4 = cos_q23*sin_q4;
-    r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
-    r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
-    r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
-    error_4 = 0.5*(goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5 - goal_r21*r31_at_q6
-        - goal_r22*r32_at_q6 - goal_r23*r33_at_q5);
-    r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
-    r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6;
-    r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6;
-    error_5 = 0.5*(goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5 - goal_r31*r11_at_q6
-        - goal_r32*r12_at_q6 - goal_r33*r13_at_q5);
-    error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5 - goal_r11*r21_at_q6
-        - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
-    /* 3 where the rotations agree, -1 where they are half a turn apart */
-    agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
-        + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
-        + goal_r33*r33_at_q5;
-    /* pose error, in characteristic lengths and radians */
-    error = softkin_root((agreement > 1.0 ? 0.0 : 1.0) + error_1*error_1 + error_2*error_2 + error_3*error_3
-        + error_4*error_4 + error_5*error_5 + error_6*error_6);
-    rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
-    z_minus_d1 = z - k->d1;
-    cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
-    rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
-    z_minus_z_at_q3 = z - z_at_q3;
-    rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-    z_minus_z_at_q4 = z - z_at_q4;
-    y_minus_y_at_q4 = y - y_at_q4;
-    rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
-    z_minus_z_at_q5 = z - z_at_q5;
-    y_minus_y_at_q5 = y - y_at_q5;
-    rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
-    z_minus_z_at_q6 = z - z_at_q6;
-    y_minus_y_at_q6 = y - y_at_q6;
-    rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
-    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
-        + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
-    sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-    rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
-    rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-    x_minus_x_at_q4 = x - x_at_q4;
-    rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-    x_minus_x_at_q5 = x - x_at_q5;
-    rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
-    x_minus_x_at_q6 = x - x_at_q6;
-    rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
-    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
-        + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
-    rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
-    rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
-    rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
-    rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
-    rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
-    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
-        + rate_1_6*rate_3_6;
-    rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
-    product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6
-        - rate_1_2_plus_rate_1_3*sin_q1;
-    product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5
-        + r23_at_q5*rate_1_6;
-    product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23;
-    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
-        + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
-    product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
-        + rate_2_6*rate_3_6;
-    rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
-    product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6
-        - rate_2_2_plus_rate_2_3*sin_q1;
-    product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5
-        + r23_at_q5*rate_2_6;
-    product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23;
-    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
-        + rate_3_6*rate_3_6;
-    rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
-    product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6
-        - rate_3_2_plus_rate_3_3*sin_q1;
-    product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5
-        + r23_at_q5*rate_3_6;
-    product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23;
-    product_4_4 = damping + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
-        + 2.0*sin_q1*sin_q1;
-    product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5 - 2.0*cos_q1*sin_q1;
-    product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23;
-    product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
-        + r23_at_q5*r23_at_q5;
-    product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
-    product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
-    /* damped least squares: the shortest step that cancels the error */
-    double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
-        error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
-        {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
-        {product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6, error_4},
-        {product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6, error_5},
-        {product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6, error_6}};
-    softkin_solve(&system[0][0], 6, 1);
-    multiplier_1 = system[0][6];
-    multiplier_2 = system[1][6];
-    multiplier_3 = system[2][6];
-    multiplier_4 = system[3][6];
-    multiplier_5 = system[4][6];
-    multiplier_6 = system[5][6];
-    step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
-    sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
-    step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
-    step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
-    step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
-        + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
-    step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
-        + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
-    step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
-        + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
-    step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
-        + step_q5*step_q5 + step_q6*step_q6);
-    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-    cost = error > 0.999*error_before ? 8 : 1;
-    meets_pose = error <= 1e-11;
-    if ((error <= 1e-14) || (passes_left <= 0)
-        || (meets_pose && ((passes_left <= 0) || (2.0*error > error_before)))) {
-      break;
-    }
-    q1 = q1 + shrinking*step_q1;
-    q2 = q2 + shrinking*step_q2;
-    q3 = q3 + shrinking*step_q3;
-    q4 = q4 + shrinking*step_q4;
-    q5 = q5 + shrinking*step_q5;
-    q6 = q6 + shrinking*step_q6;
-    error_before = error;
-    passes_left = passes_left - cost;
-  }
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], q1 = given[12],
+      q2 = given[13], q3 = given[14], q4 = given[15], q5 = given[16], q6 = given[17];
+  const double cos_q1 = cos(q1);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q1 = sin(q1);
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = cos_q1*sin_q23;
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double sin_q2 = sin(q2);
+  const double r13_at_q2 = cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
+  const double x = x_at_q6 + k->d6*r13_at_q5;
+  const double error_1 = (goal_x - x)*k->one_by_machine_scale;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = sin_q1*sin_q23;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double r23_at_q2 = sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
+  const double y = y_at_q6 + k->d6*r23_at_q5;
+  const double error_2 = (goal_y - y)*k->one_by_machine_scale;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
+  const double cos_q2 = cos(q2);
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
+  const double z = z_at_q6 + k->d6*r33_at_q5;
+  const double error_3 = (goal_z - z)*k->one_by_machine_scale;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double sin_q6 = sin(q6);
+  const double cos_q6 = cos(q6);
+  const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
+  const double r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
+  const double r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
+  const double error_4 = 0.5*(goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5
+      - goal_r21*r31_at_q6 - goal_r22*r32_at_q6 - goal_r23*r33_at_q5);
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6;
+  const double r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6;
+  const double error_5 = 0.5*(goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5
+      - goal_r31*r11_at_q6 - goal_r32*r12_at_q6 - goal_r33*r13_at_q5);
+  const double error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5
+      - goal_r11*r21_at_q6 - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
+  const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double z_minus_d1 = z - k->d1;
+  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q3 = z - z_at_q3;
+  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
+  /* 3 where the rotations agree, -1 where they are half a turn apart */
+  const double agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
+      + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
+      + goal_r33*r33_at_q5;
+  /* pose error, in characteristic lengths and radians */
+  const double error = softkin_root((agreement > 1.0 ? 0.0 : 1.0) + error_1*error_1 + error_2*error_2
+      + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6);
+  const double product_in_damping = 0.001*error;
+  const double damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+  const double product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3
+      + rate_1_4*rate_1_4 + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+  const double rate_2_1 = k->one_by_machine_scale*x;
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
+  const double product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+      + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
+  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
+  const double product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
+      + rate_1_6*rate_3_6;
+  const double rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
+  const double product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6
+      - rate_1_2_plus_rate_1_3*sin_q1;
+  const double product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5
+      + r23_at_q5*rate_1_6;
+  const double product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23;
+  const double product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3
+      + rate_2_4*rate_2_4 + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
+  const double product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
+      + rate_2_6*rate_3_6;
+  const double rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
+  const double product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6
+      - rate_2_2_plus_rate_2_3*sin_q1;
+  const double product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5
+      + r23_at_q5*rate_2_6;
+  const double product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23;
+  const double product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4
+      + rate_3_5*rate_3_5 + rate_3_6*rate_3_6;
+  const double rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
+  const double product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6
+      - rate_3_2_plus_rate_3_3*sin_q1;
+  const double product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5
+      + r23_at_q5*rate_3_6;
+  const double product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23;
+  const double product_4_4 = damping + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
+      + 2.0*sin_q1*sin_q1;
+  const double product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5
+      - 2.0*cos_q1*sin_q1;
+  const double product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23;
+  const double product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
+      + r23_at_q5*r23_at_q5;
+  const double product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
+  const double product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
+  /* damped least squares: the shortest step that cancels the error */
+  double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
+      error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
+      {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
+      {product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6, error_4},
+      {product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6, error_5},
+      {product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6, error_6}};
+  softkin_solve(&system[0][0], 6, 1);
+  const double multiplier_1 = system[0][6], multiplier_2 = system[1][6], multiplier_3 = system[2][6],
+      multiplier_4 = system[3][6], multiplier_5 = system[4][6], multiplier_6 = system[5][6];
+  const double step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+  const double sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
+  const double step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2
+      + multiplier_3*rate_3_2;
+  const double step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3
+      + multiplier_3*rate_3_3;
+  const double step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4
+      + multiplier_4*r11_at_q23 + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
+  const double step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5
+      + multiplier_4*r12_at_q4 + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
+  const double step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6
+      + multiplier_4*r13_at_q5 + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
+  const double step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
+      + step_q5*step_q5 + step_q6*step_q6);
+  const double shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+  found[0] = error;
+  found[1] = q1 + shrinking*step_q1;
+  found[2] = q2 + shrinking*step_q2;
+  found[3] = q3 + shrinking*step_q3;
+  found[4] = q4 + shrinking*step_q4;
+  found[5] = q5 + shrinking*step_q5;
+  found[6] = q6 + shrinking*step_q6;
+  return SOFTKIN_OK;
+}
+
+/* Whether joints are on the wanted branch. */
+static softkin_status find_is_on_branch(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double q1 = given[0], q2 = given[1], q3 = given[2], q4 = given[3], q5 = given[4], x = given[9],
+      y = given[10], z = given[11];
+  const int wanted_crossing = (int)given[5], wanted_elbow = (int)given[6], wanted_shoulder = (int)given[7],
+      wanted_wrist = (int)given[8];
+  const double cos_q1 = cos(q1);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q1 = sin(q1);
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = cos_q1*sin_q23;
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double r23_at_q23 = sin_q1*sin_q23;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
+  const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double z_minus_d1 = z - k->d1;
+  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
+  const double cos_q2 = cos(q2);
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_minus_z_at_q3 = z - z_at_q3;
+  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double sin_q2 = sin(q2);
+  const double r23_at_q2 = sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double sum_in_rate_1_6 = y_minus_y_at_q5 - k->j6_offset_x*r21_at_q5;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double sum_in_rate_1_6_2 = z_minus_z_at_q5 - k->j6_offset_x*r31_at_q5;
+  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*sum_in_rate_1_6_2 - r33_at_q5*sum_in_rate_1_6);
+  const double rate_2_1 = k->one_by_machine_scale*x;
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double r13_at_q2 = cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double sum_in_rate_2_6 = x_minus_x_at_q5 - k->j6_offset_x*r11_at_q5;
+  const double rate_2_6 = (r33_at_q5*sum_in_rate_2_6 - r13_at_q5*sum_in_rate_1_6_2)*k->one_by_machine_scale;
+  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*sum_in_rate_1_6 - r23_at_q5*sum_in_rate_2_6);
   /* determinant of the Jacobian, positions in characteristic lengths */
-  double system_of_2[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
+  double system[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
       {rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6},
       {0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6},
       {0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5},
       {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
       {1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5}};
-  const double determinant = softkin_solve(&system_of_2[0][0], 6, 0);
-  const bool fits = meets_pose && ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
+  const double determinant = softkin_solve(&system[0][0], 6, 0);
+  const bool fits = ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
       && (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k->quotient_in_fits >= -1e-6)
       && (wanted_elbow*(k->a3*sin(q3) + cos(q3)*k->d4)*k->one_by_machine_scale >= -1e-6)
       && (wanted_shoulder*(k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)
       *k->one_by_machine_scale >= -1e-6);
   found[0] = fits;
-  found[1] = meets_pose;
-  found[2] = q1;
-  found[3] = q2;
-  found[4] = q3;
-  found[5] = q4;
-  found[6] = q5;
-  found[7] = q6;
   return SOFTKIN_OK;
 }
 
-/* The joints at the root nearest to the start, or next ahead of it; zeros where there is none. */
+/* The joints at the root nearest to the start, or next ahead of it. */
 static softkin_status find_root(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
-      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
-      reference_a1 = given[14], reference_a2 = given[15], start_ = given[16];
-  const int wanted_crossing = (int)given[17], wanted_elbow = (int)given[18],
-      wanted_shoulder = (int)given[19], wanted_wrist = (int)given[20];
-  const bool looked_for = given[12] != 0.0, onward = given[13] != 0.0;
-  double results[18] = {0.0};
-  if (looked_for) {
-    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-        goal_r32, goal_r33, goal_x, goal_y, goal_z};
-    const softkin_status status = find_compute_wave(k, arguments, results, why);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
-  }
-  const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
-      wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
-      wave_cos_7 = results[7], wave_cos_8 = results[8], wave_sin_1 = results[9], wave_sin_2 = results[10],
-      wave_sin_3 = results[11], wave_sin_4 = results[12], wave_sin_5 = results[13], wave_sin_6 = results[14],
-      wave_sin_7 = results[15], wave_sin_8 = results[16], noise = results[17];
-  const double begin = onward ? 1e-7 + start_ : 0.1;
-  const double end_of_circle = begin + (onward ? 360.0*SOFTKIN_DEGREE - 2e-7 : 360.0*SOFTKIN_DEGREE);
-  /* the parts of the circle, and their starts */
-  double place_ = begin;
-  double low_before = begin;
-  double high_before = begin;
-  int start_before = 0;
-  int side_before = 1;
-  int steps_before = 1000;
-  int starts_left = 320;
+  const double bound_of_fifth = given[0], goal_r11 = given[1], goal_r12 = given[2], goal_r13 = given[3],
+      goal_r21 = given[4], goal_r22 = given[5], goal_r23 = given[6], goal_r31 = given[7],
+      goal_r32 = given[8], goal_r33 = given[9], goal_x = given[10], goal_y = given[11], goal_z = given[12],
+      noise = given[14], reference_a1 = given[16], reference_a2 = given[17], start_ = given[18],
+      wave_cos_0 = given[23], wave_cos_1 = given[24], wave_cos_2 = given[25], wave_cos_3 = given[26],
+      wave_cos_4 = given[27], wave_cos_5 = given[28], wave_cos_6 = given[29], wave_cos_7 = given[30],
+      wave_cos_8 = given[31], wave_sin_1 = given[32], wave_sin_2 = given[33], wave_sin_3 = given[34],
+      wave_sin_4 = given[35], wave_sin_5 = given[36], wave_sin_6 = given[37], wave_sin_7 = given[38],
+      wave_sin_8 = given[39];
+  const int wanted_crossing = (int)given[19], wanted_elbow = (int)given[20],
+      wanted_shoulder = (int)given[21], wanted_wrist = (int)given[22];
+  const bool looked_for = given[13] != 0.0, onward = given[15] != 0.0;
+  const double sum_in_way_ends = 360.0*SOFTKIN_DEGREE - 1e-7;
+  /* one step of the search */
+  int stage = 0;
+  int direction = 1;
+  double place_ = (onward ? 1e-7 : 0.0);
+  double width = 0.0;
+  int side = 1;
+  int number_of_start = 0;
+  double shortest = 0.0;
+  double aside = 0.0;
+  double error_before = 0.0;
+  int steps_left = 0;
+  bool was_mirrored = false;
   double nearest = 9.0;
-  int mirrored = 0;
+  int passes_left = 2000;
+  double at = 0.0;
+  int trials = 0;
+  double best = 0.0;
+  double least = 0.0;
+  double way = 0.0;
+  double last = 0.0;
+  double growth_before = 0.0;
+  double bend = 0.0;
+  double q1 = 0.0;
+  double met_from_q1 = 0.0;
   double kept_q1 = 0.0;
+  double q2 = 0.0;
+  double met_from_q2 = 0.0;
   double kept_q2 = 0.0;
+  double q3 = 0.0;
+  double met_from_q3 = 0.0;
   double kept_q3 = 0.0;
+  double q4 = 0.0;
+  double met_from_q4 = 0.0;
   double kept_q4 = 0.0;
+  double q5 = 0.0;
+  double met_from_q5 = 0.0;
   double kept_q5 = 0.0;
+  double q6 = 0.0;
+  double met_from_q6 = 0.0;
   double kept_q6 = 0.0;
-  double mirror_q1 = 0.0;
-  double mirror_q2 = 0.0;
-  double mirror_q3 = 0.0;
-  double mirror_q4 = 0.0;
-  double mirror_q5 = 0.0;
-  double mirror_q6 = 0.0;
-  double low, high, low_now, high_now, settled, remains, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5,
-      begun_q6, start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, joint_q1, joint_q2, joint_q3,
-      joint_q4, joint_q5, joint_q6, high_now_minus_low_now, start_minus_joint_q6, distance, mirror_now_q1,
-      mirror_now_q2, mirror_now_q3, mirror_now_q4, mirror_now_q5, mirror_now_q6;
-  int steps_still_left, number_now, number_now_plus_one, value_in_next_start, next_start, next_side,
-      steps_now;
-  bool is_between, is_part, has_part, is_new, is_near, is_tried, fits, meets_pose, mirrors, goes_on,
-      is_better;
-  for (int pass = 0; pass < 640; pass += 1) {
-    is_between = start_before == 0;
-    double results_of_2[4] = {0.0};
-    if (is_between && place_ < end_of_circle) {
-      const double arguments_of_2[] = {place_, end_of_circle, noise, steps_before, wave_cos_0, wave_cos_1,
-          wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6, wave_cos_7, wave_cos_8, wave_sin_1,
-          wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6, wave_sin_7, wave_sin_8};
-      const softkin_status status_of_2 = find_part(k, arguments_of_2, results_of_2, why);
+  double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
+      length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
+      begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
+      moved_q5, moved_q6, start_minus_q6, distance, nearest_now, moved, place_next, width_next, shortest_now,
+      growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
+      spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
+      value_in_shortening_place, shortening_place, value_in_place_of_start, sum_in_place_of_start,
+      place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
+      q1_next, met_from_q1_next, kept_q1_next, q2_next, met_from_q2_next, kept_q2_next, q3_next,
+      met_from_q3_next, kept_q3_next, q4_next, met_from_q4_next, kept_q4_next, q5_next, met_from_q5_next,
+      kept_q5_next, q6_next, met_from_q6_next, kept_q6_next;
+  int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
+      steps_left_next, passes_left_next, trials_next;
+  bool is_rounding, is_less, is_settled, is_near, steps_end, meets_pose, fits, way_ends, is_better,
+      is_shortest, mirrors, part_ends, start_ends, part_is_done, begins, side_ends, is_first, seeks_length,
+      turns_back, is_over, was_mirrored_next;
+  for (int pass = 0; pass < 2001; pass += 1) {
+    place_plus_width = place_ + width;
+    double results[2] = {0.0};
+    if (stage == 0) {
+      const double arguments[] = {place_plus_width, bound_of_fifth, direction, noise, start_, wave_cos_0,
+          wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6, wave_cos_7, wave_cos_8,
+          wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6, wave_sin_7, wave_sin_8};
+      const softkin_status status = find_look_at_wave(k, arguments, results, why);
+      if (status != SOFTKIN_OK) {
+        return status;
+      }
+    }
+    is_rounding = results[0] != 0.0;
+    safe_step = results[1];
+    real_of_direction = direction;
+    double results_of_2[7] = {0.0};
+    if ((stage == 1) || (stage == 2)) {
+      const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
+          start_ + at*real_of_direction, wanted_elbow, wanted_shoulder};
+      const softkin_status status_of_2 = find_try_joint(k, arguments_of_2, results_of_2, why);
       if (status_of_2 != SOFTKIN_OK) {
         return status_of_2;
       }
     }
-    low = results_of_2[0];
-    high = results_of_2[1];
-    is_part = results_of_2[2] != 0.0;
-    steps_still_left = (int)results_of_2[3];
-    low_now = is_between ? low : low_before;
-    high_now = is_between ? high : high_before;
-    number_now = is_between ? 1 : start_before;
-    has_part = is_part || (!is_between);
-    is_new = has_part && (mirrored == 0);
-    double results_of_3[2] = {0.0};
-    if (is_new) {
+    remainder = results_of_2[0];
+    rate = results_of_2[1];
+    room_of_trial = results_of_2[2];
+    length_1 = results_of_2[3];
+    growth_1 = results_of_2[4];
+    length_2 = results_of_2[5];
+    growth_2 = results_of_2[6];
+    size = stage == 1 ? (number_of_start > 12 ? length_2 : length_1) : fabs(remainder);
+    is_less = size < least;
+    best_now = is_less ? at : best;
+    least_now = is_less ? size : least;
+    way_now = is_less ? real_of_direction*remainder/(fabs(rate) > 0.0 ? rate : 1e30) : 0.25*way;
+    best_now_minus_way_now = best_now - way_now;
+    newton_place = best_now_minus_way_now < place_ ? place_
+        : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
+    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 24) || (fabs(at - newton_place) <= 0.0));
+    is_near = is_settled && (least_now <= 0.001) && ((room_of_trial <= 1e-6) || (width > 1e-9) || (side > 0));
+    double results_of_3[6] = {0.0};
+    if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, high_now, low_now, reference_a1, reference_a2,
-          side_before, number_now, wanted_elbow, wanted_shoulder};
-      const softkin_status status_of_3 = find_settle_joint(k, arguments_of_3, results_of_3, why);
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
+          start_ + best_now*real_of_direction, wanted_elbow, wanted_shoulder};
+      const softkin_status status_of_3 = find_joints_at(k, arguments_of_3, results_of_3, why);
       if (status_of_3 != SOFTKIN_OK) {
         return status_of_3;
       }
     }
-    settled = results_of_3[0];
-    remains = results_of_3[1];
-    is_near = is_new && (remains <= 0.001);
-    double results_of_4[6] = {0.0};
-    if (is_near) {
+    begun_q1 = results_of_3[0];
+    begun_q2 = results_of_3[1];
+    begun_q3 = results_of_3[2];
+    begun_q4 = results_of_3[3];
+    begun_q5 = results_of_3[4];
+    begun_q6 = results_of_3[5];
+    double results_of_4[7] = {0.0};
+    if (stage == 3) {
       const double arguments_of_4[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side_before, settled,
-          wanted_elbow, wanted_shoulder};
-      const softkin_status status_of_4 = find_joints_at(k, arguments_of_4, results_of_4, why);
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, q1, q2, q3, q4, q5, q6};
+      const softkin_status status_of_4 = find_step_on_closure(k, arguments_of_4, results_of_4, why);
       if (status_of_4 != SOFTKIN_OK) {
         return status_of_4;
       }
     }
-    begun_q1 = results_of_4[0];
-    begun_q2 = results_of_4[1];
-    begun_q3 = results_of_4[2];
-    begun_q4 = results_of_4[3];
-    begun_q5 = results_of_4[4];
-    begun_q6 = results_of_4[5];
-    is_tried = has_part && (is_near || (!is_new));
-    start_q1 = is_new ? begun_q1 : mirror_q1;
-    start_q2 = is_new ? begun_q2 : mirror_q2;
-    start_q3 = is_new ? begun_q3 : mirror_q3;
-    start_q4 = is_new ? begun_q4 : mirror_q4;
-    start_q5 = is_new ? begun_q5 : mirror_q5;
-    start_q6 = is_new ? begun_q6 : mirror_q6;
-    double results_of_5[8] = {0.0};
-    if (is_tried) {
-      const double arguments_of_5[] = {start_q1, start_q2, start_q3, start_q4, start_q5, start_q6, goal_r11,
-          goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32, goal_r33, goal_x, goal_y,
-          goal_z, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist};
-      const softkin_status status_of_5 = find_finish_root(k, arguments_of_5, results_of_5, why);
+    error = results_of_4[0];
+    moved_q1 = results_of_4[1];
+    moved_q2 = results_of_4[2];
+    moved_q3 = results_of_4[3];
+    moved_q4 = results_of_4[4];
+    moved_q5 = results_of_4[5];
+    moved_q6 = results_of_4[6];
+    steps_end = (stage == 3) && ((error <= 1e-14) || (steps_left <= 0)
+        || ((error <= 1e-11) && ((steps_left <= 0) || (2.0*error > error_before))));
+    meets_pose = steps_end && (error <= 1e-11);
+    double results_of_5[1] = {0.0};
+    if (meets_pose) {
+      const double arguments_of_5[] = {q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder,
+          wanted_wrist};
+      const softkin_status status_of_5 = find_is_on_branch(k, arguments_of_5, results_of_5, why);
       if (status_of_5 != SOFTKIN_OK) {
         return status_of_5;
       }
     }
     fits = results_of_5[0] != 0.0;
-    meets_pose = results_of_5[1] != 0.0;
-    joint_q1 = results_of_5[2];
-    joint_q2 = results_of_5[3];
-    joint_q3 = results_of_5[4];
-    joint_q4 = results_of_5[5];
-    joint_q5 = results_of_5[6];
-    joint_q6 = results_of_5[7];
-    mirrors = is_near && meets_pose && (!fits);
-    high_now_minus_low_now = high_now - low_now;
-    number_now_plus_one = 1 + number_now;
-    value_in_next_start = number_now < (high_now_minus_low_now <= 1e-9 ? 1
-        : (high_now_minus_low_now <= 0.0001 ? 3 : (high_now_minus_low_now <= 0.01 ? 5 : 9)))
-        ? number_now_plus_one : (number_now <= 9 ? (high_now_minus_low_now > 1e-6 ? 10 : 0)
-        : (number_now < 15 ? number_now_plus_one : 0));
-    next_start = mirrors || (side_before >= 0) ? number_now : value_in_next_start;
-    goes_on = has_part && (next_start > 0);
-    next_side = mirrors ? side_before : -side_before;
-    steps_now = is_between ? steps_still_left : steps_before;
-    start_minus_joint_q6 = start_ - joint_q6;
+    way_ends = (stage == 0) && (width <= 0.0)
+        && (place_ >= (onward ? sum_in_way_ends
+        : (nearest < 180.0*SOFTKIN_DEGREE ? 2e-7 + nearest : 180.0*SOFTKIN_DEGREE)));
+    start_minus_q6 = start_ - q6;
     distance = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
-        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6),
-        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_joint_q6))
-        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_joint_q6), cos(1e-7 + start_minus_joint_q6)));
-    is_better = fits && (distance < nearest)
-        && ((!onward) || ((distance > 1e-7) && (distance < 360.0*SOFTKIN_DEGREE - 1e-7)));
-    mirror_now_q1 = 2.0*start_q1 - joint_q1;
-    mirror_now_q2 = 2.0*start_q2 - joint_q2;
-    mirror_now_q3 = 2.0*start_q3 - joint_q3;
-    mirror_now_q4 = 2.0*start_q4 - joint_q4;
-    mirror_now_q5 = 2.0*start_q5 - joint_q5;
-    mirror_now_q6 = 2.0*start_q6 - joint_q6;
-    if ((!looked_for) || (place_ >= end_of_circle) || (starts_left <= 0)
-        || (is_between && onward && (nearest < 9.0))) {
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
+        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
+    is_better = fits && meets_pose && (distance < nearest)
+        && ((!onward) || ((distance > 1e-7) && (distance < sum_in_way_ends)));
+    nearest_now = is_better ? distance : nearest;
+    is_shortest = (stage == 1) && (trials >= 21);
+    moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
+        + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
+    mirrors = meets_pose && (!fits) && (!was_mirrored) && (moved > 1e-8);
+    part_ends = (stage == 0) && (width > 0.0) && ((!is_rounding) || (width >= 0.5));
+    start_ends = (is_settled && (!is_near)) || (steps_end && (!mirrors));
+    number_of_start_plus_one = 1 + number_of_start;
+    next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.0001 ? 3 : (width <= 0.01 ? 5 : 9)))
+        ? number_of_start_plus_one
+        : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
+        : (number_of_start < 15 ? number_of_start_plus_one : 0));
+    part_is_done = start_ends && (next_number == 0) && (side <= 0);
+    begins = (!part_is_done) && (part_ends || start_ends);
+    side_ends = start_ends && (next_number == 0) && (side > 0);
+    is_first = part_ends || side_ends;
+    number_now = is_first ? 1 : (start_ends ? next_number : number_of_start);
+    seeks_length = begins && ((number_now == 10) || (number_now == 13));
+    next_stage = is_near || mirrors || ((!steps_end) && (stage == 3)) ? 3
+        : (seeks_length || ((!is_shortest) && (stage == 1)) ? 1
+        : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
+    turns_back = way_ends && (!onward) && (direction > 0);
+    is_over = (passes_left <= 0) || (way_ends && (!turns_back))
+        || (onward && (next_stage == 0) && (nearest_now < 9.0));
+    direction_next = turns_back ? -1 : direction;
+    place_next = turns_back ? 0.0
+        : (part_is_done ? place_plus_width
+        : ((!is_rounding) && (stage == 0) && (width <= 0.0) ? place_ + safe_step : place_));
+    width_next = turns_back ? 0.0
+        : (part_is_done ? 0.0 : ((!part_ends) && (stage == 0)
+        ? (width > 0.0 ? 2.0*width : (is_rounding ? 1e-13 : 0.0)) : width));
+    side_next = part_ends ? 1 : (side_ends ? -1 : side);
+    shortest_now = is_shortest ? best_now : shortest;
+    growth = (number_of_start > 12 ? growth_2 : growth_1)*real_of_direction;
+    gap = growth - growth_before;
+    way_of_trial = at - last;
+    bend_now = (trials > 9) && (gap*way_of_trial > 0.0)
+        ? gap/((trials > 9) && (gap*way_of_trial > 0.0) ? way_of_trial : 1.0) : bend;
+    bend_now_2 = bend_now > 0.0 ? bend_now : 1.0;
+    aside_now = is_shortest ? (bend_now > 0.0 ? 1.7*least_now/softkin_root(bend_now_2) : 0.0) : aside;
+    error_before_next = is_near || mirrors ? 9.0 : error;
+    steps_left_next = is_near || mirrors ? 64 : steps_left + (error > 0.999*error_before ? -8 : -1);
+    was_mirrored_next = (!is_near) && (mirrors || was_mirrored);
+    passes_left_next = passes_left - 1;
+    spread = 0.125*width;
+    spread_times_1_by_4 = 0.25*spread;
+    best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4;
+    at_minus_growth_by_bend_now = at - growth/bend_now_2;
+    value_in_shortening_place = trials < 9 ? best_now
+        : (trials == 9 ? (best_now_plus_spread_times_1_by_4 > place_plus_width ? best_now
+        - spread_times_1_by_4 : best_now_plus_spread_times_1_by_4)
+        : (at_minus_growth_by_bend_now < place_ ? place_
+        : (at_minus_growth_by_bend_now > place_plus_width ? place_plus_width : at_minus_growth_by_bend_now)));
+    shortening_place = trials < 8 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
+    value_in_place_of_start = (number_now == 11) || (number_now == 14) ? aside_now + shortest_now
+        : ((number_now == 12) || (number_now == 15) ? shortest_now - aside_now : shortest_now);
+    sum_in_place_of_start = place_
+        + (number_now == 9 ? 0.875
+        : (number_now == 8 ? 0.625
+        : (number_now == 7 ? 0.375
+        : (number_now == 6 ? 0.125
+        : (number_now == 5 ? 0.75
+        : (number_now == 4 ? 0.25 : (number_now == 3 ? 1.0 : (number_now == 2 ? 0.0 : 0.5))))))))*width;
+    place_of_start = seeks_length ? place_
+        : (number_now > 9 ? (value_in_place_of_start < place_ ? place_
+        : (value_in_place_of_start > place_plus_width ? place_plus_width : value_in_place_of_start))
+        : sum_in_place_of_start);
+    at_next = begins || is_shortest ? place_of_start : (stage == 1 ? shortening_place : newton_place);
+    trials_next = begins || is_shortest ? 0 : 1 + trials;
+    best_next = begins || is_shortest ? place_of_start : best_now;
+    least_next = begins || is_shortest ? 1e30 : least_now;
+    way_next = begins || is_shortest ? 0.0 : way_now;
+    last_next = begins || is_shortest ? place_of_start : at;
+    growth_before_next = begins || is_shortest ? 0.0 : growth;
+    bend_next = begins || is_shortest ? 0.0 : bend_now;
+    q1_next = is_near ? begun_q1 : (mirrors ? 2.0*met_from_q1 - q1 : moved_q1);
+    met_from_q1_next = is_near ? begun_q1 : met_from_q1;
+    kept_q1_next = is_better ? q1 : kept_q1;
+    q2_next = is_near ? begun_q2 : (mirrors ? 2.0*met_from_q2 - q2 : moved_q2);
+    met_from_q2_next = is_near ? begun_q2 : met_from_q2;
+    kept_q2_next = is_better ? q2 : kept_q2;
+    q3_next = is_near ? begun_q3 : (mirrors ? 2.0*met_from_q3 - q3 : moved_q3);
+    met_from_q3_next = is_near ? begun_q3 : met_from_q3;
+    kept_q3_next = is_better ? q3 : kept_q3;
+    q4_next = is_near ? begun_q4 : (mirrors ? 2.0*met_from_q4 - q4 : moved_q4);
+    met_from_q4_next = is_near ? begun_q4 : met_from_q4;
+    kept_q4_next = is_better ? q4 : kept_q4;
+    q5_next = is_near ? begun_q5 : (mirrors ? 2.0*met_from_q5 - q5 : moved_q5);
+    met_from_q5_next = is_near ? begun_q5 : met_from_q5;
+    kept_q5_next = is_better ? q5 : kept_q5;
+    q6_next = is_near ? begun_q6 : (mirrors ? 2.0*met_from_q6 - q6 : moved_q6);
+    met_from_q6_next = is_near ? begun_q6 : met_from_q6;
+    kept_q6_next = is_better ? q6 : kept_q6;
+    if (is_over || (!looked_for)) {
       break;
     }
-    place_ = (goes_on ? place_ : high_now);
-    low_before = low_now;
-    high_before = high_now;
-    start_before = (goes_on ? next_start : 0);
-    side_before = (goes_on ? next_side : 1);
-    steps_before = steps_now;
-    starts_left = starts_left + (has_part ? -1 : 0);
-    nearest = (is_better ? distance : nearest);
-    mirrored = (mirrors ? 1 : 0);
-    kept_q1 = (is_better ? joint_q1 : kept_q1);
-    kept_q2 = (is_better ? joint_q2 : kept_q2);
-    kept_q3 = (is_better ? joint_q3 : kept_q3);
-    kept_q4 = (is_better ? joint_q4 : kept_q4);
-    kept_q5 = (is_better ? joint_q5 : kept_q5);
-    kept_q6 = (is_better ? joint_q6 : kept_q6);
-    mirror_q1 = mirror_now_q1;
-    mirror_q2 = mirror_now_q2;
-    mirror_q3 = mirror_now_q3;
-    mirror_q4 = mirror_now_q4;
-    mirror_q5 = mirror_now_q5;
-    mirror_q6 = mirror_now_q6;
+    stage = next_stage;
+    direction = direction_next;
+    place_ = place_next;
+    width = width_next;
+    side = side_next;
+    number_of_start = number_now;
+    shortest = shortest_now;
+    aside = aside_now;
+    error_before = error_before_next;
+    steps_left = steps_left_next;
+    was_mirrored = was_mirrored_next;
+    nearest = nearest_now;
+    passes_left = passes_left_next;
+    at = at_next;
+    trials = trials_next;
+    best = best_next;
+    least = least_next;
+    way = way_next;
+    last = last_next;
+    growth_before = growth_before_next;
+    bend = bend_next;
+    q1 = q1_next;
+    met_from_q1 = met_from_q1_next;
+    kept_q1 = kept_q1_next;
+    q2 = q2_next;
+    met_from_q2 = met_from_q2_next;
+    kept_q2 = kept_q2_next;
+    q3 = q3_next;
+    met_from_q3 = met_from_q3_next;
+    kept_q3 = kept_q3_next;
+    q4 = q4_next;
+    met_from_q4 = met_from_q4_next;
+    kept_q4 = kept_q4_next;
+    q5 = q5_next;
+    met_from_q5 = met_from_q5_next;
+    kept_q5 = kept_q5_next;
+    q6 = q6_next;
+    met_from_q6 = met_from_q6_next;
+    kept_q6 = kept_q6_next;
   }
-  found[0] = nearest < 9.0;
-  found[1] = (nearest < 9.0 ? nearest : 0.0);
+  found[0] = nearest_now < 9.0;
+  found[1] = (nearest_now < 9.0 ? nearest_now : 0.0);
   found[2] = kept_q1;
   found[3] = kept_q2;
   found[4] = kept_q3;
@@ -1716,20 +1785,36 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,
         "without an offset, only the first branch of the crossing has a solution", "", 0.0, 0);
   }
+  double results[19] = {0.0};
+  if (k->searched) {
+    const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z};
+    const softkin_status status = find_compute_wave(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
+      wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
+      wave_cos_7 = results[7], wave_cos_8 = results[8], wave_sin_1 = results[9], wave_sin_2 = results[10],
+      wave_sin_3 = results[11], wave_sin_4 = results[12], wave_sin_5 = results[13], wave_sin_6 = results[14],
+      wave_sin_7 = results[15], wave_sin_8 = results[16], noise = results[17], bound_of_fifth = results[18];
   const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
   const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
   const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-  /* root scan along A6 */
-  double results[8];
-  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched, false,
-      reference_a1, reference_a2, reference_a6, sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist};
-  const softkin_status status = find_root(k, arguments, results, why);
-  if (status != SOFTKIN_OK) {
-    return status;
+  /* root search along A6 */
+  double results_of_2[8];
+  const double arguments_of_2[] = {bound_of_fifth, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z,
+      k->searched, noise, false, reference_a1, reference_a2, reference_a6, sigma_crossing, sigma_elbow,
+      sigma_shoulder, sigma_wrist, wave_cos_0, wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5,
+      wave_cos_6, wave_cos_7, wave_cos_8, wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5,
+      wave_sin_6, wave_sin_7, wave_sin_8};
+  const softkin_status status_of_2 = find_root(k, arguments_of_2, results_of_2, why);
+  if (status_of_2 != SOFTKIN_OK) {
+    return status_of_2;
   }
-  const double found_q1 = results[2], found_q2 = results[3], found_q3 = results[4], found_q4 = results[5],
-      found_q5 = results[6], found_q6 = results[7];
-  const bool found_ = results[0] != 0.0;
+  const double found_q1 = results_of_2[2], found_q2 = results_of_2[3], found_q3 = results_of_2[4],
+      found_q4 = results_of_2[5], found_q5 = results_of_2[6], found_q6 = results_of_2[7];
+  const bool found_ = results_of_2[0] != 0.0;
   /* q6: the search along it finds no root of this branch */
   if (!(found_ || (!k->searched))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A6: the search along it finds no root of this branch",
@@ -2236,30 +2321,62 @@ static softkin_status find_search_given(const void *machine, const softkin_frame
       ref_a3, ref_a4, ref_a5, ref_a6, x, y, z}, 18)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
+  double results[19] = {0.0};
+  if (k->searched) {
+    const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z};
+    const softkin_status status = find_compute_wave(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+  }
+  const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
+      wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
+      wave_cos_7 = results[7], wave_cos_8 = results[8], wave_sin_1 = results[9], wave_sin_2 = results[10],
+      wave_sin_3 = results[11], wave_sin_4 = results[12], wave_sin_5 = results[13], wave_sin_6 = results[14],
+      wave_sin_7 = results[15], wave_sin_8 = results[16], noise = results[17], bound_of_fifth = results[18];
   const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
   const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
   const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-  given[0] = r11;
-  given[1] = r12;
-  given[2] = r13;
-  given[3] = r21;
-  given[4] = r22;
-  given[5] = r23;
-  given[6] = r31;
-  given[7] = r32;
-  given[8] = r33;
-  given[9] = x;
-  given[10] = y;
-  given[11] = z;
-  given[12] = k->searched;
-  given[13] = false;
-  given[14] = reference_a1;
-  given[15] = reference_a2;
-  given[16] = reference_a6;
-  given[17] = sigma_crossing;
-  given[18] = sigma_elbow;
-  given[19] = sigma_shoulder;
-  given[20] = sigma_wrist;
+  given[0] = bound_of_fifth;
+  given[1] = r11;
+  given[2] = r12;
+  given[3] = r13;
+  given[4] = r21;
+  given[5] = r22;
+  given[6] = r23;
+  given[7] = r31;
+  given[8] = r32;
+  given[9] = r33;
+  given[10] = x;
+  given[11] = y;
+  given[12] = z;
+  given[13] = k->searched;
+  given[14] = noise;
+  given[15] = false;
+  given[16] = reference_a1;
+  given[17] = reference_a2;
+  given[18] = reference_a6;
+  given[19] = sigma_crossing;
+  given[20] = sigma_elbow;
+  given[21] = sigma_shoulder;
+  given[22] = sigma_wrist;
+  given[23] = wave_cos_0;
+  given[24] = wave_cos_1;
+  given[25] = wave_cos_2;
+  given[26] = wave_cos_3;
+  given[27] = wave_cos_4;
+  given[28] = wave_cos_5;
+  given[29] = wave_cos_6;
+  given[30] = wave_cos_7;
+  given[31] = wave_cos_8;
+  given[32] = wave_sin_1;
+  given[33] = wave_sin_2;
+  given[34] = wave_sin_3;
+  given[35] = wave_sin_4;
+  given[36] = wave_sin_5;
+  given[37] = wave_sin_6;
+  given[38] = wave_sin_7;
+  given[39] = wave_sin_8;
   return SOFTKIN_OK;
 }
 
@@ -2312,6 +2429,206 @@ static softkin_status find_from_joints(const void *machine, const double *joints
   return SOFTKIN_OK;
 }
 
+/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
+ * has an answer. */
+static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
+    softkin_status *statuses, double *axes) {
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
+      r13 = frame->rotation[0][2], r23 = frame->rotation[1][2], r33 = frame->rotation[2][2],
+      ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
+      ref_a5 = reference[4], ref_a6 = reference[5];
+  const double a2_plus_length_25_2 = k->a2 + k->length_25;
+  const double a2_minus_length_25_2 = k->a2 - k->length_25;
+  if (!(!k->searched)) {
+    return false;
+  }
+  /* wrist centre: the last joints do not move this point */
+  const double wrist_x_closed = x - k->d6*r13;
+  const double wrist_y_closed = y - k->d6*r23;
+  /* distance of the point from the axis of q1 */
+  const double distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed);
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_closed_front = distance_q1_closed - k->a1;
+  const double wrist_z_closed = z - k->d6*r33;
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_z_from_q1_closed = wrist_z_closed - k->d1;
+  const double wrist_z_from_q1_closed_squared = wrist_z_from_q1_closed*wrist_z_from_q1_closed;
+  /* distance that the remaining links must span */
+  const double reach_closed_front = softkin_root(wrist_z_from_q1_closed_squared
+      + wrist_x_from_q1_closed_front*wrist_x_from_q1_closed_front);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_closed_front = (a2_plus_length_25_2 + reach_closed_front)
+      *(a2_plus_length_25_2 - reach_closed_front);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_closed_front = (reach_closed_front - a2_minus_length_25_2)
+      *(a2_minus_length_25_2 + reach_closed_front);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double sum_q3_closed_front = one_less_cos_q3_closed_front + one_plus_cos_q3_closed_front;
+  const double divisor_of_cos_q3_closed_front = sum_q3_closed_front > 0.0 ? sum_q3_closed_front : 1.0;
+  const double cos_swing_q3_closed_front = (one_plus_cos_q3_closed_front - one_less_cos_q3_closed_front)
+      /divisor_of_cos_q3_closed_front;
+  int refusal_front_rising, refusal_front_falling;
+  if (fabs(cos_swing_q3_closed_front) <= 1.0000000000005) {
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_front_rising = 0;
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_front_falling = 3;
+  } else {
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_front_rising = 3;
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_front_falling = 3;
+  }
+  /* coordinate of the point that the remaining links must reach */
+  const double wrist_x_from_q1_closed_back = -k->a1 - distance_q1_closed;
+  /* distance that the remaining links must span */
+  const double reach_closed_back = softkin_root(wrist_z_from_q1_closed_squared
+      + wrist_x_from_q1_closed_back*wrist_x_from_q1_closed_back);
+  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
+  const double one_less_cos_q3_closed_back = (a2_plus_length_25_2 + reach_closed_back)
+      *(a2_plus_length_25_2 - reach_closed_back);
+  /* 1 + cosine, times the scale */
+  const double one_plus_cos_q3_closed_back = (reach_closed_back - a2_minus_length_25_2)
+      *(a2_minus_length_25_2 + reach_closed_back);
+  /* sum of both, twice the scale: cosine² + sine² is then 1 */
+  const double sum_q3_closed_back = one_less_cos_q3_closed_back + one_plus_cos_q3_closed_back;
+  const double divisor_of_cos_q3_closed_back = sum_q3_closed_back > 0.0 ? sum_q3_closed_back : 1.0;
+  const double cos_swing_q3_closed_back = (one_plus_cos_q3_closed_back - one_less_cos_q3_closed_back)
+      /divisor_of_cos_q3_closed_back;
+  int refusal_back_rising, refusal_back_falling;
+  if (fabs(cos_swing_q3_closed_back) <= 1.0000000000005) {
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_back_rising = 0;
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_back_falling = 3;
+  } else {
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_back_rising = 3;
+    /* without an offset, only the first branch of the crossing has a solution */
+    refusal_back_falling = 3;
+  }
+  const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
+  const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
+  const double near_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
+  const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
+  const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
+  const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
+  statuses[0] = (softkin_status)(refusal_front_rising);
+  axes[0] = softkin_on_turn(axis_a1, near_a1);
+  axes[1] = softkin_on_turn(axis_a2, near_a2);
+  axes[2] = softkin_on_turn(axis_a3, near_a3);
+  axes[3] = softkin_on_turn(axis_a4, near_a4);
+  axes[4] = softkin_on_turn(axis_a5, near_a5);
+  axes[5] = softkin_on_turn(axis_a6, near_a6);
+  statuses[1] = (softkin_status)(refusal_back_rising);
+  axes[6] = softkin_on_turn(axis_a1, near_a1);
+  axes[7] = softkin_on_turn(axis_a2, near_a2);
+  axes[8] = softkin_on_turn(axis_a3, near_a3);
+  axes[9] = softkin_on_turn(axis_a4, near_a4);
+  axes[10] = softkin_on_turn(axis_a5, near_a5);
+  axes[11] = softkin_on_turn(axis_a6, near_a6);
+  statuses[2] = (softkin_status)(refusal_front_rising);
+  axes[12] = softkin_on_turn(axis_a1, near_a1);
+  axes[13] = softkin_on_turn(axis_a2, near_a2);
+  axes[14] = softkin_on_turn(axis_a3, near_a3);
+  axes[15] = softkin_on_turn(axis_a4, near_a4);
+  axes[16] = softkin_on_turn(axis_a5, near_a5);
+  axes[17] = softkin_on_turn(axis_a6, near_a6);
+  statuses[3] = (softkin_status)(refusal_back_rising);
+  axes[18] = softkin_on_turn(axis_a1, near_a1);
+  axes[19] = softkin_on_turn(axis_a2, near_a2);
+  axes[20] = softkin_on_turn(axis_a3, near_a3);
+  axes[21] = softkin_on_turn(axis_a4, near_a4);
+  axes[22] = softkin_on_turn(axis_a5, near_a5);
+  axes[23] = softkin_on_turn(axis_a6, near_a6);
+  statuses[4] = (softkin_status)(refusal_front_rising);
+  axes[24] = softkin_on_turn(axis_a1, near_a1);
+  axes[25] = softkin_on_turn(axis_a2, near_a2);
+  axes[26] = softkin_on_turn(axis_a3, near_a3);
+  axes[27] = softkin_on_turn(axis_a4, near_a4);
+  axes[28] = softkin_on_turn(axis_a5, near_a5);
+  axes[29] = softkin_on_turn(axis_a6, near_a6);
+  statuses[5] = (softkin_status)(refusal_back_rising);
+  axes[30] = softkin_on_turn(axis_a1, near_a1);
+  axes[31] = softkin_on_turn(axis_a2, near_a2);
+  axes[32] = softkin_on_turn(axis_a3, near_a3);
+  axes[33] = softkin_on_turn(axis_a4, near_a4);
+  axes[34] = softkin_on_turn(axis_a5, near_a5);
+  axes[35] = softkin_on_turn(axis_a6, near_a6);
+  statuses[6] = (softkin_status)(refusal_front_rising);
+  axes[36] = softkin_on_turn(axis_a1, near_a1);
+  axes[37] = softkin_on_turn(axis_a2, near_a2);
+  axes[38] = softkin_on_turn(axis_a3, near_a3);
+  axes[39] = softkin_on_turn(axis_a4, near_a4);
+  axes[40] = softkin_on_turn(axis_a5, near_a5);
+  axes[41] = softkin_on_turn(axis_a6, near_a6);
+  statuses[7] = (softkin_status)(refusal_back_rising);
+  axes[42] = softkin_on_turn(axis_a1, near_a1);
+  axes[43] = softkin_on_turn(axis_a2, near_a2);
+  axes[44] = softkin_on_turn(axis_a3, near_a3);
+  axes[45] = softkin_on_turn(axis_a4, near_a4);
+  axes[46] = softkin_on_turn(axis_a5, near_a5);
+  axes[47] = softkin_on_turn(axis_a6, near_a6);
+  statuses[8] = (softkin_status)(refusal_front_falling);
+  axes[48] = softkin_on_turn(axis_a1, near_a1);
+  axes[49] = softkin_on_turn(axis_a2, near_a2);
+  axes[50] = softkin_on_turn(axis_a3, near_a3);
+  axes[51] = softkin_on_turn(axis_a4, near_a4);
+  axes[52] = softkin_on_turn(axis_a5, near_a5);
+  axes[53] = softkin_on_turn(axis_a6, near_a6);
+  statuses[9] = (softkin_status)(refusal_back_falling);
+  axes[54] = softkin_on_turn(axis_a1, near_a1);
+  axes[55] = softkin_on_turn(axis_a2, near_a2);
+  axes[56] = softkin_on_turn(axis_a3, near_a3);
+  axes[57] = softkin_on_turn(axis_a4, near_a4);
+  axes[58] = softkin_on_turn(axis_a5, near_a5);
+  axes[59] = softkin_on_turn(axis_a6, near_a6);
+  statuses[10] = (softkin_status)(refusal_front_falling);
+  axes[60] = softkin_on_turn(axis_a1, near_a1);
+  axes[61] = softkin_on_turn(axis_a2, near_a2);
+  axes[62] = softkin_on_turn(axis_a3, near_a3);
+  axes[63] = softkin_on_turn(axis_a4, near_a4);
+  axes[64] = softkin_on_turn(axis_a5, near_a5);
+  axes[65] = softkin_on_turn(axis_a6, near_a6);
+  statuses[11] = (softkin_status)(refusal_back_falling);
+  axes[66] = softkin_on_turn(axis_a1, near_a1);
+  axes[67] = softkin_on_turn(axis_a2, near_a2);
+  axes[68] = softkin_on_turn(axis_a3, near_a3);
+  axes[69] = softkin_on_turn(axis_a4, near_a4);
+  axes[70] = softkin_on_turn(axis_a5, near_a5);
+  axes[71] = softkin_on_turn(axis_a6, near_a6);
+  statuses[12] = (softkin_status)(refusal_front_falling);
+  axes[72] = softkin_on_turn(axis_a1, near_a1);
+  axes[73] = softkin_on_turn(axis_a2, near_a2);
+  axes[74] = softkin_on_turn(axis_a3, near_a3);
+  axes[75] = softkin_on_turn(axis_a4, near_a4);
+  axes[76] = softkin_on_turn(axis_a5, near_a5);
+  axes[77] = softkin_on_turn(axis_a6, near_a6);
+  statuses[13] = (softkin_status)(refusal_back_falling);
+  axes[78] = softkin_on_turn(axis_a1, near_a1);
+  axes[79] = softkin_on_turn(axis_a2, near_a2);
+  axes[80] = softkin_on_turn(axis_a3, near_a3);
+  axes[81] = softkin_on_turn(axis_a4, near_a4);
+  axes[82] = softkin_on_turn(axis_a5, near_a5);
+  axes[83] = softkin_on_turn(axis_a6, near_a6);
+  statuses[14] = (softkin_status)(refusal_front_falling);
+  axes[84] = softkin_on_turn(axis_a1, near_a1);
+  axes[85] = softkin_on_turn(axis_a2, near_a2);
+  axes[86] = softkin_on_turn(axis_a3, near_a3);
+  axes[87] = softkin_on_turn(axis_a4, near_a4);
+  axes[88] = softkin_on_turn(axis_a5, near_a5);
+  axes[89] = softkin_on_turn(axis_a6, near_a6);
+  statuses[15] = (softkin_status)(refusal_back_falling);
+  axes[90] = softkin_on_turn(axis_a1, near_a1);
+  axes[91] = softkin_on_turn(axis_a2, near_a2);
+  axes[92] = softkin_on_turn(axis_a3, near_a3);
+  axes[93] = softkin_on_turn(axis_a4, near_a4);
+  axes[94] = softkin_on_turn(axis_a5, near_a5);
+  axes[95] = softkin_on_turn(axis_a6, near_a6);
+  return true;
+}
+
 static softkin_status find_root_of(const void *machine, const double *given, double *results,
     softkin_refusal *why) {
   return find_root(machine, given, results, why);
@@ -2319,7 +2636,7 @@ static softkin_status find_root_of(const void *machine, const double *given, dou
 
 /* The joints at every root of the search, the nearest to the reference first. */
 static void find_every_root(const void *machine, const double *given, softkin_take take, void *context) {
-  const softkin_roots of = {find_root_of, machine, given, 21, 16, 13, 6};
+  const softkin_roots of = {find_root_of, machine, given, 43, 18, 15, 6};
   softkin_every_root(&of, take, context);
 }
 
@@ -2463,6 +2780,7 @@ const softkin_mechanism ac6_rzryryrxryrz_j6offset_mechanism = {
     .jacobian = find_jacobian,
     .search_given = find_search_given,
     .from_joints = find_from_joints,
+    .every_branch = find_every_branch,
     .every_root = find_every_root,
 };
 

@@ -32,20 +32,15 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 78184934 additions, 115413544 multiplications, 12101849 divisions, 7260802 square roots, 1971244
-    sines
-    inverse, all 16 branches: 1250959217 additions, 1846616800 multiplications, 193629584 divisions, 116172832
-    square roots, 31539904 sines
+    inverse: 1328718 additions, 1882979 multiplications, 108055 divisions, 44024 square roots, 88044 sines
+    inverse, all 16 branches: 21259761 additions, 30127760 multiplications, 1728880 divisions, 704384 square
+    roots, 1408704 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
-    12 sines
+    a branch at a singular pose, in addition: 3153 additions, 5563 multiplications, 99 divisions, 3 square
+    roots, 56 sines
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
-    the parts of the circle, and their starts: at most 640 passes, all of which are counted
-    steps around the circle that pass no zero of the wave: at most 1002 passes, all of which are counted
-    where the length is shortest: at most 22 passes, all of which are counted
-    Newton's method on the residual of the branch: at most 25 passes, all of which are counted
-    steps of damped least squares on the closure: at most 65 passes, all of which are counted
+    one step of the search: at most 2001 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
@@ -73,11 +68,12 @@ from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reason
 from softkin._root import every_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
+from softkin._unrolled.ac6_rzryryrxryrz_j6offset import unrolled
 
 if TYPE_CHECKING:
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
     from softkin._ends import Limits
-    from softkin._types import Matrix, Reals, Rotation, Signs, Turns, Values, Vector
+    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -128,10 +124,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 2ed70b9c493da7b6"
+    KEY = "ac6_rzryryrxryrz_j6offset 54ab4a020aeb4a5e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -290,6 +286,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """
         self._accept(locals())
         self._constants = Constants(self)
+        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
     def _compute_wave(self, given: Values) -> Values | Status:
@@ -494,16 +491,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
             factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
             r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
-            factor_297_part = (
+            factor_301_part = (
                 -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
             )
-            factor_298_part = (
-                factor_297_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            factor_302_part = (
+                factor_301_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_298_root_1_part = (
+            factor_302_root_1_part = (
                 2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_301_root_1_part = factor_298_part * factor_34_root_1_part + factor_298_root_1_part * factor_34_part
+            factor_305_root_1_part = factor_302_part * factor_34_root_1_part + factor_302_root_1_part * factor_34_part
             factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
             product_in_factor_151_part = factor_34_part * factor_47_root_3_part
             factor_151_part = factor_109_root_3_part * product_in_factor_151_part
@@ -581,18 +578,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_from_q123_part = factor_174_part + factor_178_part
             factor_202_part = r11_from_q123_part * sin_q6_tried
             r12_from_q123_before_q6_part = factor_198_part + factor_202_part
-            factor_304_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
-            product_306_root_1_part = factor_304_root_1_part - factor_301_root_1_part
-            factor_308_part = product_306_root_1_part * product_306_root_1_part
-            factor_309_part = -factor_308_part * factor_8_part
-            factor_300_part = -factor_298_root_1_part * product_in_factor_154_part
-            factor_301_part = factor_300_part + factor_298_part * factor_34_part
-            factor_303_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
-            factor_304_part = factor_303_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
-            product_306_part = factor_304_part - factor_301_part
-            factor_310_part = product_306_part * product_306_part
-            product_311_part = factor_310_part - factor_309_part
-            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_311_part
+            factor_308_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part
+            factor_312_part = product_310_root_1_part * product_310_root_1_part
+            factor_313_part = -factor_312_part * factor_8_part
+            factor_304_part = -factor_302_root_1_part * product_in_factor_154_part
+            factor_305_part = factor_304_part + factor_302_part * factor_34_part
+            factor_307_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_308_part = factor_307_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_310_part = factor_308_part - factor_305_part
+            factor_314_part = product_310_part * product_310_part
+            product_315_part = factor_314_part - factor_313_part
+            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_315_part
             level = 0.5 * taken
             cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
             sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
@@ -636,24 +633,24 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_8 = wave_sin_8 + taken * sin_8
             wave_sin_9 = wave_sin_9 + taken * sin_9
             wave_sin_10 = wave_sin_10 + taken * sin_10
+        sum_in_rounding_0 = abs(wave_cos_7) + abs(wave_sin_7)
+        sum_in_rounding_0_2 = abs(wave_cos_3) + abs(wave_sin_3)
+        sum_in_rounding_0_3 = abs(wave_cos_6) + abs(wave_sin_6)
+        sum_in_rounding_0_4 = abs(wave_cos_1) + abs(wave_sin_1)
+        sum_in_rounding_0_5 = abs(wave_cos_2) + abs(wave_sin_2)
+        sum_in_rounding_0_6 = abs(wave_cos_4) + abs(wave_sin_4)
+        sum_in_rounding_0_7 = abs(wave_cos_8) + abs(wave_sin_8)
+        sum_in_rounding_0_8 = abs(wave_cos_5) + abs(wave_sin_5)
         rounding_0 = 1e-14 * (
-            abs(wave_cos_0)
-            + abs(wave_cos_1)
-            + abs(wave_cos_2)
-            + abs(wave_cos_3)
-            + abs(wave_cos_4)
-            + abs(wave_cos_5)
-            + abs(wave_cos_6)
-            + abs(wave_cos_7)
-            + abs(wave_cos_8)
-            + abs(wave_sin_1)
-            + abs(wave_sin_2)
-            + abs(wave_sin_3)
-            + abs(wave_sin_4)
-            + abs(wave_sin_5)
-            + abs(wave_sin_6)
-            + abs(wave_sin_7)
-            + abs(wave_sin_8)
+            sum_in_rounding_0
+            + sum_in_rounding_0_2
+            + sum_in_rounding_0_3
+            + sum_in_rounding_0_4
+            + sum_in_rounding_0_5
+            + sum_in_rounding_0_6
+            + sum_in_rounding_0_7
+            + sum_in_rounding_0_8
+            + abs(wave_cos_0)
         )
         size_of_wave_cos_9_times_32 = 32.0 * abs(wave_cos_9)
         rounding_1 = max(rounding_0, size_of_wave_cos_9_times_32)
@@ -663,6 +660,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         rounding_3 = max(rounding_2, size_of_wave_sin_9_times_32)
         size_of_wave_sin_10_times_32 = 32.0 * abs(wave_sin_10)
         rounding_4 = max(rounding_3, size_of_wave_sin_10_times_32)
+        sum_in_bound_of_fifth = (
+            2.025 * sum_in_rounding_0_2
+            + 64.8 * sum_in_rounding_0_3
+            + 0.008333333333333333 * sum_in_rounding_0_4
+            + 0.26666666666666666 * sum_in_rounding_0_5
+            + 8.533333333333333 * sum_in_rounding_0_6
+            + 273.06666666666666 * sum_in_rounding_0_7
+            + 26.041666666666668 * sum_in_rounding_0_8
+        )
+        bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334 * sum_in_rounding_0
         return (
             wave_cos_0,
             wave_cos_1,
@@ -682,15 +689,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_7,
             wave_sin_8,
             rounding_4,
+            bound_of_fifth,
         )
 
-    def _find_part(self, given: Values) -> Values | Status:
-        """The next part of the circle in which the wave may be zero."""
+    def _look_at_wave(self, given: Values) -> Values | Status:
+        """Whether the wave is rounding at an angle, and how far it does not vanish from there."""
         (
-            at,
-            end,
+            ahead_by,
+            bound_of_fifth,
+            direction,
             noise,
-            steps_left,
+            start,
             wave_cos_0,
             wave_cos_1,
             wave_cos_2,
@@ -709,162 +718,179 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_bound_of_fifth = (
-            0.008333333333333333 * (abs(wave_cos_1) + abs(wave_sin_1))
-            + 0.26666666666666666 * (abs(wave_cos_2) + abs(wave_sin_2))
-            + 2.025 * (abs(wave_cos_3) + abs(wave_sin_3))
-            + 8.533333333333333 * (abs(wave_cos_4) + abs(wave_sin_4))
-            + 26.041666666666668 * (abs(wave_cos_5) + abs(wave_sin_5))
-            + 64.8 * (abs(wave_cos_6) + abs(wave_sin_6))
-            + 273.06666666666666 * (abs(wave_cos_8) + abs(wave_sin_8))
+        sum_in_cos_1 = start + direction * ahead_by
+        cos_1 = cos(sum_in_cos_1)
+        sin_1 = sin(sum_in_cos_1)
+        even_1 = wave_cos_1 * cos_1 + wave_sin_1 * sin_1
+        cos_2 = cos_1 * cos_1 - sin_1 * sin_1
+        sin_2 = 2.0 * cos_1 * sin_1
+        even_2 = wave_cos_2 * cos_2 + wave_sin_2 * sin_2
+        cos_3 = cos_1 * cos_2 - sin_1 * sin_2
+        sin_3 = cos_1 * sin_2 + cos_2 * sin_1
+        even_3 = wave_cos_3 * cos_3 + wave_sin_3 * sin_3
+        cos_4 = cos_1 * cos_3 - sin_1 * sin_3
+        sin_4 = cos_1 * sin_3 + cos_3 * sin_1
+        even_4 = wave_cos_4 * cos_4 + wave_sin_4 * sin_4
+        cos_5 = cos_1 * cos_4 - sin_1 * sin_4
+        sin_5 = cos_1 * sin_4 + cos_4 * sin_1
+        even_5 = wave_cos_5 * cos_5 + wave_sin_5 * sin_5
+        cos_6 = cos_1 * cos_5 - sin_1 * sin_5
+        sin_6 = cos_1 * sin_5 + cos_5 * sin_1
+        even_6 = wave_cos_6 * cos_6 + wave_sin_6 * sin_6
+        cos_7 = cos_1 * cos_6 - sin_1 * sin_6
+        sin_7 = cos_1 * sin_6 + cos_6 * sin_1
+        even_7 = wave_cos_7 * cos_7 + wave_sin_7 * sin_7
+        cos_8 = cos_1 * cos_7 - sin_1 * sin_7
+        sin_8 = cos_1 * sin_7 + cos_7 * sin_1
+        even_8 = wave_cos_8 * cos_8 + wave_sin_8 * sin_8
+        wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0
+        is_rounding = abs(wave) <= noise
+        odd_1 = wave_sin_1 * cos_1 - wave_cos_1 * sin_1
+        odd_2 = wave_sin_2 * cos_2 - wave_cos_2 * sin_2
+        odd_3 = wave_sin_3 * cos_3 - wave_cos_3 * sin_3
+        odd_4 = wave_sin_4 * cos_4 - wave_cos_4 * sin_4
+        odd_5 = wave_sin_5 * cos_5 - wave_cos_5 * sin_5
+        odd_6 = wave_sin_6 * cos_6 - wave_cos_6 * sin_6
+        odd_7 = wave_sin_7 * cos_7 - wave_cos_7 * sin_7
+        odd_8 = wave_sin_8 * cos_8 - wave_cos_8 * sin_8
+        slope = direction * (
+            odd_1 + 2.0 * odd_2 + 3.0 * odd_3 + 4.0 * odd_4 + 5.0 * odd_5 + 6.0 * odd_6 + 7.0 * odd_7 + 8.0 * odd_8
         )
-        bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334 * (abs(wave_cos_7) + abs(wave_sin_7))
-        # steps around the circle that pass no zero of the wave
-        place, width, steps_still_left = at, 0.0, steps_left
-        for _ in range(1002):
-            angle = place + width
-            cos_1 = cos(angle)
-            sin_1 = sin(angle)
-            even_1 = wave_cos_1 * cos_1 + wave_sin_1 * sin_1
-            cos_2 = cos_1 * cos_1 - sin_1 * sin_1
-            sin_2 = 2.0 * cos_1 * sin_1
-            even_2 = wave_cos_2 * cos_2 + wave_sin_2 * sin_2
-            cos_3 = cos_1 * cos_2 - sin_1 * sin_2
-            sin_3 = cos_1 * sin_2 + cos_2 * sin_1
-            even_3 = wave_cos_3 * cos_3 + wave_sin_3 * sin_3
-            cos_4 = cos_1 * cos_3 - sin_1 * sin_3
-            sin_4 = cos_1 * sin_3 + cos_3 * sin_1
-            even_4 = wave_cos_4 * cos_4 + wave_sin_4 * sin_4
-            cos_5 = cos_1 * cos_4 - sin_1 * sin_4
-            sin_5 = cos_1 * sin_4 + cos_4 * sin_1
-            even_5 = wave_cos_5 * cos_5 + wave_sin_5 * sin_5
-            cos_6 = cos_1 * cos_5 - sin_1 * sin_5
-            sin_6 = cos_1 * sin_5 + cos_5 * sin_1
-            even_6 = wave_cos_6 * cos_6 + wave_sin_6 * sin_6
-            cos_7 = cos_1 * cos_6 - sin_1 * sin_6
-            sin_7 = cos_1 * sin_6 + cos_6 * sin_1
-            even_7 = wave_cos_7 * cos_7 + wave_sin_7 * sin_7
-            cos_8 = cos_1 * cos_7 - sin_1 * sin_7
-            sin_8 = cos_1 * sin_7 + cos_7 * sin_1
-            even_8 = wave_cos_8 * cos_8 + wave_sin_8 * sin_8
-            wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0
-            is_rounding = abs(wave) <= noise
-            is_over = ((place >= end) and (width <= 0.0)) or ((width > 0.0) and ((not is_rounding) or (width >= 0.5)))
-            half_noise_minus_size_of_wave = 0.5 * noise - abs(wave)
-            room = max(0.0, -half_noise_minus_size_of_wave)
-            odd_1 = wave_sin_1 * cos_1 - wave_cos_1 * sin_1
-            odd_2 = wave_sin_2 * cos_2 - wave_cos_2 * sin_2
-            odd_3 = wave_sin_3 * cos_3 - wave_cos_3 * sin_3
-            odd_4 = wave_sin_4 * cos_4 - wave_cos_4 * sin_4
-            odd_5 = wave_sin_5 * cos_5 - wave_cos_5 * sin_5
-            odd_6 = wave_sin_6 * cos_6 - wave_cos_6 * sin_6
-            odd_7 = wave_sin_7 * cos_7 - wave_cos_7 * sin_7
-            odd_8 = wave_sin_8 * cos_8 - wave_cos_8 * sin_8
-            slope = (
-                odd_1 + 2.0 * odd_2 + 3.0 * odd_3 + 4.0 * odd_4 + 5.0 * odd_5 + 6.0 * odd_6 + 7.0 * odd_7 + 8.0 * odd_8
-            )
-            sign_of_wave = -1.0 if wave < 0.0 else 1.0
-            sign_of_wave_times_slope = sign_of_wave * slope
-            falls_slope = max(0.0, -sign_of_wave_times_slope)
-            bend = (
-                -0.5 * even_1
-                - 2.0 * even_2
-                - 4.5 * even_3
-                - 8.0 * even_4
-                - 12.5 * even_5
-                - 18.0 * even_6
-                - 24.5 * even_7
-                - 32.0 * even_8
-            )
-            bend_times_sign_of_wave = bend * sign_of_wave
-            falls_bend = max(0.0, -bend_times_sign_of_wave)
-            third = (
-                -odd_1 / 6.0
-                - 4.0 * odd_2 / 3.0
-                - 4.5 * odd_3
-                - 32.0 * odd_4 / 3.0
-                - 125.0 * odd_5 / 6.0
-                - 36.0 * odd_6
-                - 343.0 * odd_7 / 6.0
-                - 256.0 * odd_8 / 3.0
-            )
-            sign_of_wave_times_third = sign_of_wave * third
-            falls_third = max(0.0, -sign_of_wave_times_third)
-            fourth = (
-                even_1 / 24.0
-                + 2.0 * even_2 / 3.0
-                + 3.375 * even_3
-                + 32.0 * even_4 / 3.0
-                + 625.0 * even_5 / 24.0
-                + 54.0 * even_6
-                + 2401.0 * even_7 / 24.0
-                + 512.0 * even_8 / 3.0
-            )
-            fourth_times_sign_of_wave = fourth * sign_of_wave
-            falls_fourth = max(0.0, -fourth_times_sign_of_wave)
-            curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third
-            falls_slope_squared = falls_slope * falls_slope
-            divisor_1 = falls_slope + root(falls_slope_squared + 4.0 * curve_1 * room)
-            twice_room = 2.0 * room
-            allowed_1 = 2.0 * room / (divisor_1 if divisor_1 > twice_room else 1.0) if divisor_1 > twice_room else 1.0
+        sign_of_wave = -1.0 if wave < 0.0 else 1.0
+        falls_slope = -sign_of_wave * slope
+        bend = (
+            -0.5 * even_1
+            - 2.0 * even_2
+            - 4.5 * even_3
+            - 8.0 * even_4
+            - 12.5 * even_5
+            - 18.0 * even_6
+            - 24.5 * even_7
+            - 32.0 * even_8
+        )
+        bend_times_sign_of_wave = bend * sign_of_wave
+        falls_bend = max(0.0, -bend_times_sign_of_wave)
+        third = (
+            -odd_1 / 6.0
+            - 4.0 * odd_2 / 3.0
+            - 4.5 * odd_3
+            - 32.0 * odd_4 / 3.0
+            - 125.0 * odd_5 / 6.0
+            - 36.0 * odd_6
+            - 343.0 * odd_7 / 6.0
+            - 256.0 * odd_8 / 3.0
+        ) * direction
+        sign_of_wave_times_third = sign_of_wave * third
+        falls_third = max(0.0, -sign_of_wave_times_third)
+        fourth = (
+            even_1 / 24.0
+            + 2.0 * even_2 / 3.0
+            + 3.375 * even_3
+            + 32.0 * even_4 / 3.0
+            + 625.0 * even_5 / 24.0
+            + 54.0 * even_6
+            + 2401.0 * even_7 / 24.0
+            + 512.0 * even_8 / 3.0
+        )
+        fourth_times_sign_of_wave = fourth * sign_of_wave
+        falls_fourth = max(0.0, -fourth_times_sign_of_wave)
+        curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third
+        half_noise_minus_size_of_wave = 0.5 * noise - abs(wave)
+        room = max(0.0, -half_noise_minus_size_of_wave)
+        falls_slope_squared = falls_slope * falls_slope
+        root_1 = root(falls_slope_squared + 4.0 * curve_1 * room)
+        twice_room = 2.0 * room
+        if falls_slope > 0.0:
+            value_in_allowed_1 = falls_slope + root_1
+            value_in_allowed_1_2 = twice_room
+        else:
+            value_in_allowed_1 = 2.0 * curve_1
+            value_in_allowed_1_2 = root_1 - falls_slope
+        if value_in_allowed_1 > value_in_allowed_1_2:
+            allowed_1 = value_in_allowed_1_2 / value_in_allowed_1
             safe_1 = max(0.0, allowed_1)
-            length_1 = sqrt(safe_1) if safe_1 > 0.0 else 0.0
-            curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_1) * length_1) * length_1
-            divisor_2 = falls_slope + root(falls_slope_squared + 4.0 * curve_2 * room)
-            allowed_2 = (
-                2.0 * room / (divisor_2 if divisor_2 * length_1 > twice_room else 1.0)
-                if divisor_2 * length_1 > twice_room
-                else length_1
-            )
-            safe_2 = max(safe_1, allowed_2)
-            long_2 = length_1 if divisor_2 * length_1 > twice_room else 1.0
-            length_2 = root(long_2 * safe_2)
-            curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_2) * length_2) * length_2
-            divisor_3 = falls_slope + root(falls_slope_squared + 4.0 * curve_3 * room)
-            allowed_3 = (
-                2.0 * room / (divisor_3 if divisor_3 * length_2 > twice_room else 1.0)
-                if divisor_3 * length_2 > twice_room
-                else length_2
-            )
-            safe_3 = max(safe_2, allowed_3)
-            long_3 = length_2 if divisor_3 * length_2 > twice_room else long_2
-            length_3 = root(long_3 * safe_3)
-            curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_3) * length_3) * length_3
-            divisor_4 = falls_slope + root(falls_slope_squared + 4.0 * curve_4 * room)
-            allowed_4 = (
-                2.0 * room / (divisor_4 if divisor_4 * length_3 > twice_room else 1.0)
-                if divisor_4 * length_3 > twice_room
-                else length_3
-            )
-            safe_4 = max(safe_3, allowed_4)
-            long_4 = length_3 if divisor_4 * length_3 > twice_room else long_3
-            length_4 = root(long_4 * safe_4)
-            curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_4) * length_4) * length_4
-            divisor_5 = falls_slope + root(falls_slope_squared + 4.0 * curve_5 * room)
-            allowed_5 = (
-                2.0 * room / (divisor_5 if divisor_5 * length_4 > twice_room else 1.0)
-                if divisor_5 * length_4 > twice_room
-                else length_4
-            )
-            safe_5 = max(safe_4, allowed_5)
-            long_5 = length_4 if divisor_5 * length_4 > twice_room else long_4
-            length_5 = root(long_5 * safe_5)
-            curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_5) * length_5) * length_5
-            divisor_6 = falls_slope + root(falls_slope_squared + 4.0 * curve_6 * room)
-            allowed_6 = (
-                2.0 * room / (divisor_6 if divisor_6 * length_5 > twice_room else 1.0)
-                if divisor_6 * length_5 > twice_room
-                else length_5
-            )
-            safe_6 = max(safe_5, allowed_6)
-            way = 0.0 if is_rounding or (width > 0.0) else max(1e-15, safe_6)
-            if is_over or (steps_still_left <= 0):
-                break
-            place = place + way
-            width = 2.0 * width if width > 0.0 else (1e-13 if is_rounding else 0.0)
-            steps_still_left = steps_still_left - 1
-        is_part = is_over and (width > 0.0)
-        return ((place if is_part else end), (angle if is_part else end), is_part, steps_still_left)
+        else:
+            safe_1 = 1.0
+        length_1 = sqrt(safe_1) if safe_1 > 0.0 else 0.0
+        curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_1) * length_1) * length_1
+        root_2 = root(falls_slope_squared + 4.0 * curve_2 * room)
+        if falls_slope > 0.0:
+            value_in_long_2 = falls_slope + root_2
+            value_in_long_2_2 = twice_room
+        else:
+            value_in_long_2 = 2.0 * curve_2
+            value_in_long_2_2 = root_2 - falls_slope
+        if length_1 * value_in_long_2 > value_in_long_2_2:
+            allowed_2 = value_in_long_2_2 / value_in_long_2
+            long_2 = length_1
+        else:
+            allowed_2 = length_1
+            long_2 = 1.0
+        safe_2 = max(safe_1, allowed_2)
+        length_2 = root(long_2 * safe_2)
+        curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_2) * length_2) * length_2
+        root_3 = root(falls_slope_squared + 4.0 * curve_3 * room)
+        if falls_slope > 0.0:
+            value_in_long_3 = falls_slope + root_3
+            value_in_long_3_2 = twice_room
+        else:
+            value_in_long_3 = 2.0 * curve_3
+            value_in_long_3_2 = root_3 - falls_slope
+        if length_2 * value_in_long_3 > value_in_long_3_2:
+            allowed_3 = value_in_long_3_2 / value_in_long_3
+            long_3 = length_2
+        else:
+            allowed_3 = length_2
+            long_3 = long_2
+        safe_3 = max(safe_2, allowed_3)
+        length_3 = root(long_3 * safe_3)
+        curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_3) * length_3) * length_3
+        root_4 = root(falls_slope_squared + 4.0 * curve_4 * room)
+        if falls_slope > 0.0:
+            value_in_long_4 = falls_slope + root_4
+            value_in_long_4_2 = twice_room
+        else:
+            value_in_long_4 = 2.0 * curve_4
+            value_in_long_4_2 = root_4 - falls_slope
+        if length_3 * value_in_long_4 > value_in_long_4_2:
+            allowed_4 = value_in_long_4_2 / value_in_long_4
+            long_4 = length_3
+        else:
+            allowed_4 = length_3
+            long_4 = long_3
+        safe_4 = max(safe_3, allowed_4)
+        length_4 = root(long_4 * safe_4)
+        curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_4) * length_4) * length_4
+        root_5 = root(falls_slope_squared + 4.0 * curve_5 * room)
+        if falls_slope > 0.0:
+            value_in_long_5 = falls_slope + root_5
+            value_in_long_5_2 = twice_room
+        else:
+            value_in_long_5 = 2.0 * curve_5
+            value_in_long_5_2 = root_5 - falls_slope
+        if length_4 * value_in_long_5 > value_in_long_5_2:
+            allowed_5 = value_in_long_5_2 / value_in_long_5
+            long_5 = length_4
+        else:
+            allowed_5 = length_4
+            long_5 = long_4
+        safe_5 = max(safe_4, allowed_5)
+        length_5 = root(long_5 * safe_5)
+        curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_5) * length_5) * length_5
+        root_6 = root(falls_slope_squared + 4.0 * curve_6 * room)
+        if falls_slope > 0.0:
+            value_in_allowed_6 = falls_slope + root_6
+            value_in_allowed_6_2 = twice_room
+        else:
+            value_in_allowed_6 = 2.0 * curve_6
+            value_in_allowed_6_2 = root_6 - falls_slope
+        allowed_6 = (
+            value_in_allowed_6_2 / (value_in_allowed_6 if length_5 * value_in_allowed_6 > value_in_allowed_6_2 else 1.0)
+            if length_5 * value_in_allowed_6 > value_in_allowed_6_2
+            else length_5
+        )
+        safe_6 = max(safe_5, allowed_6)
+        return (is_rounding, max(1e-15, safe_6))
 
     def _try_joint(self, given: Values) -> Values | Status:
         """The residual of the closure at a trial, with its slope, and lengths that turn angles."""
@@ -1080,257 +1106,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
+        room_tried = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
+            room_tried,
             distance_q1_tried,
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
             reach_tried * slope_reach_tried,
         )
-
-    def _find_shortest(self, given: Values) -> Values | Status:
-        """Where a length that turns an angle is shortest, and how far beside it turns by a sixth."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            high,
-            low,
-            reference_a1,
-            reference_a2,
-            side,
-            wanted_elbow,
-            wanted_shoulder,
-            which_length,
-        ) = given
-        high_minus_low = high - low
-        high_minus_low_times_1_by_32 = high_minus_low / 32.0
-        # where the length is shortest
-        place, best_place, least, last_place, growth_before, bend, steps = low, low, 1e30, low, 0.0, 0.0, 0
-        for _ in range(22):
-            found = self._try_joint(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                    reference_a1,
-                    reference_a2,
-                    side,
-                    place,
-                    wanted_elbow,
-                    wanted_shoulder,
-                )
-            )
-            if isinstance(found, Status):
-                return found
-            _, _, length_1, growth_1, length_2, growth_2 = found
-            growth = growth_2 if which_length == 2 else growth_1
-            length = length_2 if which_length == 2 else length_1
-            is_less = length < least
-            best_now = place if is_less else best_place
-            gap = growth - growth_before
-            way = place - last_place
-            bend_now = gap / (way if gap * way > 0.0 else 1.0) if (steps > 9) and (gap * way > 0.0) else bend
-            bend_now_2 = bend_now if bend_now > 0.0 else 1.0
-            place_minus_growth_by_bend_now = place - growth / bend_now_2
-            sum_in_next_place = best_now + high_minus_low_times_1_by_32
-            next_place = (
-                low + 0.125 * (1.0 + steps) * high_minus_low
-                if steps < 8
-                else (
-                    best_now
-                    if steps < 9
-                    else (
-                        (best_now - high_minus_low_times_1_by_32 if sum_in_next_place > high else sum_in_next_place)
-                        if steps == 9
-                        else (
-                            low
-                            if place_minus_growth_by_bend_now < low
-                            else (high if place_minus_growth_by_bend_now > high else place_minus_growth_by_bend_now)
-                        )
-                    )
-                )
-            )
-            shared_value = length if is_less else least
-            if steps >= 21:
-                break
-            place = next_place
-            best_place = best_now
-            least = shared_value
-            last_place = last_place + way
-            growth_before = growth
-            bend = bend_now
-            steps = 1 + steps
-        return (
-            best_now,
-            (1.7 * shared_value / (sqrt(bend_now_2) if bend_now_2 > 0.0 else 0.0) if bend_now > 0.0 else 0.0),
-        )
-
-    def _settle_joint(self, given: Values) -> Values | Status:
-        """The joint value next to a start at which the residual is smallest."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            high,
-            low,
-            reference_a1,
-            reference_a2,
-            side,
-            start_number,
-            wanted_elbow,
-            wanted_shoulder,
-        ) = given
-        is_at_length = start_number > 9
-        if is_at_length:
-            found = self._find_shortest(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                    high,
-                    low,
-                    reference_a1,
-                    reference_a2,
-                    side,
-                    wanted_elbow,
-                    wanted_shoulder,
-                    (2 if start_number > 12 else 1),
-                )
-            )
-            if isinstance(found, Status):
-                return found
-            shortest_place, aside = found
-        else:
-            shortest_place, aside = (0.0, 0.0)
-        part_width = high - low
-        if is_at_length:
-            sum_in_start_of_steps = (
-                shortest_place
-                + (
-                    (1.0 if start_number == 11 else (-1.0 if start_number == 12 else 0.0))
-                    + (1.0 if start_number == 14 else (-1.0 if start_number == 15 else 0.0))
-                )
-                * aside
-            )
-            start_of_steps = (
-                low
-                if sum_in_start_of_steps < low
-                else (high if sum_in_start_of_steps > high else sum_in_start_of_steps)
-            )
-        else:
-            value_in_start_of_steps = (
-                0.875
-                if start_number == 9
-                else (
-                    0.625
-                    if start_number == 8
-                    else (
-                        0.375
-                        if start_number == 7
-                        else (
-                            0.125
-                            if start_number == 6
-                            else (
-                                0.75
-                                if start_number == 5
-                                else (
-                                    0.25
-                                    if start_number == 4
-                                    else (1.0 if start_number == 3 else (0.0 if start_number == 2 else 0.5))
-                                )
-                            )
-                        )
-                    )
-                )
-            )
-            start_of_steps = low + part_width * value_in_start_of_steps
-        # Newton's method on the residual of the branch
-        place, best_place, least, way, share, steps = start_of_steps, start_of_steps, 1e30, 0.0, 1.0, 0
-        for _ in range(25):
-            found = self._try_joint(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                    reference_a1,
-                    reference_a2,
-                    side,
-                    place,
-                    wanted_elbow,
-                    wanted_shoulder,
-                )
-            )
-            if isinstance(found, Status):
-                return found
-            remainder, slope, *_ = found
-            size = abs(remainder)
-            is_less = size < least
-            best_now = place if is_less else best_place
-            way_now = remainder / (slope if abs(slope) > 0.0 else 1e30) if is_less else way
-            share_now = 1.0 if is_less else 0.25 * share
-            best_now_minus_share_now_times_way_now = best_now - share_now * way_now
-            next_place = (
-                low
-                if best_now_minus_share_now_times_way_now < low
-                else (high if best_now_minus_share_now_times_way_now > high else best_now_minus_share_now_times_way_now)
-            )
-            least_now = size if is_less else least
-            if (part_width <= 1e-9) or (steps >= 24) or (abs(next_place - place) <= 0.0):
-                break
-            place = next_place
-            best_place = best_now
-            least = least_now
-            way = way_now
-            share = share_now
-            steps = 1 + steps
-        return (best_now, least_now)
 
     def _joints_at(self, given: Values) -> Values | Status:
         """The joints with the searched one known."""
@@ -1442,15 +1227,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             arctan2(sin_q6_tried + 0.0, cos_q6_tried + 0.0),
         )
 
-    def _finish_root(self, given: Values) -> Values | Status:
-        """The joints that meet the pose, and whether they are on the branch."""
+    def _step_on_closure(self, given: Values) -> Values | Status:
+        """A step of all joints towards the pose, and the error before it."""
         (
-            begun_q1,
-            begun_q2,
-            begun_q3,
-            begun_q4,
-            begun_q5,
-            begun_q6,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -1463,318 +1242,360 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_x,
             goal_y,
             goal_z,
-            wanted_crossing,
-            wanted_elbow,
-            wanted_shoulder,
-            wanted_wrist,
+            q1,
+            q2,
+            q3,
+            q4,
+            q5,
+            q6,
         ) = given
         k = self._constants
         a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
-        one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
-        # steps of damped least squares on the closure
-        q1, q2, q3, q4, q5, q6, error_before, passes_left = (
-            begun_q1,
-            begun_q2,
-            begun_q3,
-            begun_q4,
-            begun_q5,
-            begun_q6,
-            9.0,
-            64,
+        one_by_machine_scale = k.one_by_machine_scale
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = a1 * cos_q1
+        sin_q2 = sin(q2)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        error_1 = (goal_x - x) * one_by_machine_scale
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        error_2 = (goal_y - y) * one_by_machine_scale
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
+        error_3 = (goal_z - z) * one_by_machine_scale
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        sin_q6 = sin(q6)
+        cos_q6 = cos(q6)
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r32_at_q4 = cos_q23 * sin_q4
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+        error_4 = 0.5 * (
+            goal_r31 * r21_at_q6
+            + goal_r32 * r22_at_q6
+            + goal_r33 * r23_at_q5
+            - goal_r21 * r31_at_q6
+            - goal_r22 * r32_at_q6
+            - goal_r23 * r33_at_q5
         )
-        for _ in range(65):
-            cos_q1 = cos(q1)
-            q2_plus_q3 = q2 + q3
-            cos_q23 = cos(q2_plus_q3)
-            r11_at_q23 = cos_q1 * cos_q23
-            sin_q1 = sin(q1)
-            sin_q23 = sin(q2_plus_q3)
-            r13_at_q23 = cos_q1 * sin_q23
-            sin_q4 = sin(q4)
-            cos_q4 = cos(q4)
-            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-            sin_q5 = sin(q5)
-            cos_q5 = cos(q5)
-            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-            x_at_q2 = a1 * cos_q1
-            sin_q2 = sin(q2)
-            r13_at_q2 = cos_q1 * sin_q2
-            x_at_q3 = x_at_q2 + a2 * r13_at_q2
-            x_at_q4 = x_at_q3 + a3 * r13_at_q23
-            x_at_q5 = x_at_q4 + d4 * r11_at_q23
-            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-            x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
-            x = x_at_q6 + d6 * r13_at_q5
-            error_1 = (goal_x - x) * one_by_machine_scale
-            r21_at_q23 = cos_q23 * sin_q1
-            r23_at_q23 = sin_q1 * sin_q23
-            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-            y_at_q2 = a1 * sin_q1
-            r23_at_q2 = sin_q1 * sin_q2
-            y_at_q3 = y_at_q2 + a2 * r23_at_q2
-            y_at_q4 = y_at_q3 + a3 * r23_at_q23
-            y_at_q5 = y_at_q4 + d4 * r21_at_q23
-            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-            y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
-            y = y_at_q6 + d6 * r23_at_q5
-            error_2 = (goal_y - y) * one_by_machine_scale
-            r33_at_q4 = cos_q23 * cos_q4
-            r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-            cos_q2 = cos(q2)
-            z_at_q3 = d1 + a2 * cos_q2
-            z_at_q4 = z_at_q3 + a3 * cos_q23
-            z_at_q5 = z_at_q4 - d4 * sin_q23
-            r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-            z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
-            z = z_at_q6 + d6 * r33_at_q5
-            error_3 = (goal_z - z) * one_by_machine_scale
-            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-            sin_q6 = sin(q6)
-            cos_q6 = cos(q6)
-            r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-            r32_at_q4 = cos_q23 * sin_q4
-            r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-            r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-            r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-            error_4 = 0.5 * (
-                goal_r31 * r21_at_q6
-                + goal_r32 * r22_at_q6
-                + goal_r33 * r23_at_q5
-                - goal_r21 * r31_at_q6
-                - goal_r22 * r32_at_q6
-                - goal_r23 * r33_at_q5
-            )
-            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-            r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-            r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-            error_5 = 0.5 * (
-                goal_r11 * r31_at_q6
-                + goal_r12 * r32_at_q6
-                + goal_r13 * r33_at_q5
-                - goal_r31 * r11_at_q6
-                - goal_r32 * r12_at_q6
-                - goal_r33 * r13_at_q5
-            )
-            error_6 = 0.5 * (
-                goal_r21 * r11_at_q6
-                + goal_r22 * r12_at_q6
-                + goal_r23 * r13_at_q5
-                - goal_r11 * r21_at_q6
-                - goal_r12 * r22_at_q6
-                - goal_r13 * r23_at_q5
-            )
-            # 3 where the rotations agree, -1 where they are half a turn apart
-            agreement = (
-                goal_r11 * r11_at_q6
-                + goal_r12 * r12_at_q6
-                + goal_r13 * r13_at_q5
-                + goal_r21 * r21_at_q6
-                + goal_r22 * r22_at_q6
-                + goal_r23 * r23_at_q5
-                + goal_r31 * r31_at_q6
-                + goal_r32 * r32_at_q6
-                + goal_r33 * r33_at_q5
-            )
-            # pose error, in characteristic lengths and radians
-            error = root(
-                (0.0 if agreement > 1.0 else 1.0)
-                + error_1 * error_1
-                + error_2 * error_2
-                + error_3 * error_3
-                + error_4 * error_4
-                + error_5 * error_5
-                + error_6 * error_6
-            )
-            rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
-            z_minus_d1 = z - d1
-            cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
-            rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-            z_minus_z_at_q3 = z - z_at_q3
-            rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            z_minus_z_at_q4 = z - z_at_q4
-            y_minus_y_at_q4 = y - y_at_q4
-            rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-            z_minus_z_at_q5 = z - z_at_q5
-            y_minus_y_at_q5 = y - y_at_q5
-            rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-            z_minus_z_at_q6 = z - z_at_q6
-            y_minus_y_at_q6 = y - y_at_q6
-            rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
-                + rate_1_2 * rate_1_2
-                + rate_1_3 * rate_1_3
-                + rate_1_4 * rate_1_4
-                + rate_1_5 * rate_1_5
-                + rate_1_6 * rate_1_6
-            )
-            sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
-            rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-            rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-            x_minus_x_at_q5 = x - x_at_q5
-            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
-            x_minus_x_at_q6 = x - x_at_q6
-            rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
-            product_1_2 = (
-                rate_1_1 * rate_2_1
-                + rate_1_2 * rate_2_2
-                + rate_1_3 * rate_2_3
-                + rate_1_4 * rate_2_4
-                + rate_1_5 * rate_2_5
-                + rate_1_6 * rate_2_6
-            )
-            rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-            rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-            rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-            product_1_3 = (
-                rate_1_2 * rate_3_2
-                + rate_1_3 * rate_3_3
-                + rate_1_4 * rate_3_4
-                + rate_1_5 * rate_3_5
-                + rate_1_6 * rate_3_6
-            )
-            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-            product_1_4 = (
-                r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
-            )
-            product_1_5 = (
-                rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
-            )
-            product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
-            product_2_3 = (
-                rate_2_2 * rate_3_2
-                + rate_2_3 * rate_3_3
-                + rate_2_4 * rate_3_4
-                + rate_2_5 * rate_3_5
-                + rate_2_6 * rate_3_6
-            )
-            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-            product_2_4 = (
-                r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
-            )
-            product_2_5 = (
-                rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
-            )
-            product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
-            rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-            product_3_4 = (
-                r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
-            )
-            product_3_5 = (
-                rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
-            )
-            product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
-            product_4_4 = (
-                damping
-                + r11_at_q23 * r11_at_q23
-                + r12_at_q4 * r12_at_q4
-                + r13_at_q5 * r13_at_q5
-                + 2.0 * sin_q1 * sin_q1
-            )
-            product_4_5 = (
-                r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
-            )
-            product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
-            product_5_5 = (
-                damping
-                + 2.0 * cos_q1 * cos_q1
-                + r21_at_q23 * r21_at_q23
-                + r22_at_q4 * r22_at_q4
-                + r23_at_q5 * r23_at_q5
-            )
-            product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
-            product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-            # damped least squares: the shortest step that cancels the error
-            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
-                (
-                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
-                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
-                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
-                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
-                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
-                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
-                ),
-                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
-            )
-            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-            step_q4 = (
-                multiplier_1 * rate_1_4
-                + multiplier_2 * rate_2_4
-                + multiplier_3 * rate_3_4
-                + multiplier_4 * r11_at_q23
-                + multiplier_5 * r21_at_q23
-                - multiplier_6 * sin_q23
-            )
-            step_q5 = (
-                multiplier_1 * rate_1_5
-                + multiplier_2 * rate_2_5
-                + multiplier_3 * rate_3_5
-                + multiplier_4 * r12_at_q4
-                + multiplier_5 * r22_at_q4
-                + multiplier_6 * r32_at_q4
-            )
-            step_q6 = (
-                multiplier_1 * rate_1_6
-                + multiplier_2 * rate_2_6
-                + multiplier_3 * rate_3_6
-                + multiplier_4 * r13_at_q5
-                + multiplier_5 * r23_at_q5
-                + multiplier_6 * r33_at_q5
-            )
-            step_length = sqrt(
-                step_q1 * step_q1
-                + step_q2 * step_q2
-                + step_q3 * step_q3
-                + step_q4 * step_q4
-                + step_q5 * step_q5
-                + step_q6 * step_q6
-            )
-            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-            cost = 8 if error > 0.999 * error_before else 1
-            meets_pose = error <= 1e-11
-            if (
-                (error <= 1e-14)
-                or (passes_left <= 0)
-                or (meets_pose and ((passes_left <= 0) or (2.0 * error > error_before)))
-            ):
-                break
-            q1 = q1 + shrinking * step_q1
-            q2 = q2 + shrinking * step_q2
-            q3 = q3 + shrinking * step_q3
-            q4 = q4 + shrinking * step_q4
-            q5 = q5 + shrinking * step_q5
-            q6 = q6 + shrinking * step_q6
-            error_before = error
-            passes_left = passes_left - cost
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        error_5 = 0.5 * (
+            goal_r11 * r31_at_q6
+            + goal_r12 * r32_at_q6
+            + goal_r13 * r33_at_q5
+            - goal_r31 * r11_at_q6
+            - goal_r32 * r12_at_q6
+            - goal_r33 * r13_at_q5
+        )
+        error_6 = 0.5 * (
+            goal_r21 * r11_at_q6
+            + goal_r22 * r12_at_q6
+            + goal_r23 * r13_at_q5
+            - goal_r11 * r21_at_q6
+            - goal_r12 * r22_at_q6
+            - goal_r13 * r23_at_q5
+        )
+        rate_1_1 = -one_by_machine_scale * y
+        z_minus_d1 = z - d1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        # 3 where the rotations agree, -1 where they are half a turn apart
+        agreement = (
+            goal_r11 * r11_at_q6
+            + goal_r12 * r12_at_q6
+            + goal_r13 * r13_at_q5
+            + goal_r21 * r21_at_q6
+            + goal_r22 * r22_at_q6
+            + goal_r23 * r23_at_q5
+            + goal_r31 * r31_at_q6
+            + goal_r32 * r32_at_q6
+            + goal_r33 * r33_at_q5
+        )
+        # pose error, in characteristic lengths and radians
+        error = root(
+            (0.0 if agreement > 1.0 else 1.0)
+            + error_1 * error_1
+            + error_2 * error_2
+            + error_3 * error_3
+            + error_4 * error_4
+            + error_5 * error_5
+            + error_6 * error_6
+        )
+        product_in_damping = 0.001 * error
+        damping = max(1e-13, product_in_damping)
+        product_1_1 = (
+            damping
+            + rate_1_1 * rate_1_1
+            + rate_1_2 * rate_1_2
+            + rate_1_3 * rate_1_3
+            + rate_1_4 * rate_1_4
+            + rate_1_5 * rate_1_5
+            + rate_1_6 * rate_1_6
+        )
+        rate_2_1 = one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
+        product_1_2 = (
+            rate_1_1 * rate_2_1
+            + rate_1_2 * rate_2_2
+            + rate_1_3 * rate_2_3
+            + rate_1_4 * rate_2_4
+            + rate_1_5 * rate_2_5
+            + rate_1_6 * rate_2_6
+        )
+        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        product_1_3 = (
+            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
+        )
+        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+        product_1_4 = (
+            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+        )
+        product_1_5 = (
+            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+        )
+        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
+        product_2_2 = (
+            damping
+            + rate_2_1 * rate_2_1
+            + rate_2_2 * rate_2_2
+            + rate_2_3 * rate_2_3
+            + rate_2_4 * rate_2_4
+            + rate_2_5 * rate_2_5
+            + rate_2_6 * rate_2_6
+        )
+        product_2_3 = (
+            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
+        )
+        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+        product_2_4 = (
+            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+        )
+        product_2_5 = (
+            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+        )
+        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
+        product_3_3 = (
+            damping
+            + rate_3_2 * rate_3_2
+            + rate_3_3 * rate_3_3
+            + rate_3_4 * rate_3_4
+            + rate_3_5 * rate_3_5
+            + rate_3_6 * rate_3_6
+        )
+        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+        product_3_4 = (
+            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+        )
+        product_3_5 = (
+            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+        )
+        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+        product_4_4 = (
+            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+        )
+        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+        product_5_5 = (
+            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+        )
+        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
+        # damped least squares: the shortest step that cancels the error
+        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+            (
+                (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+            ),
+            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+        )
+        step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+        sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+        step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+        step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+        step_q4 = (
+            multiplier_1 * rate_1_4
+            + multiplier_2 * rate_2_4
+            + multiplier_3 * rate_3_4
+            + multiplier_4 * r11_at_q23
+            + multiplier_5 * r21_at_q23
+            - multiplier_6 * sin_q23
+        )
+        step_q5 = (
+            multiplier_1 * rate_1_5
+            + multiplier_2 * rate_2_5
+            + multiplier_3 * rate_3_5
+            + multiplier_4 * r12_at_q4
+            + multiplier_5 * r22_at_q4
+            + multiplier_6 * r32_at_q4
+        )
+        step_q6 = (
+            multiplier_1 * rate_1_6
+            + multiplier_2 * rate_2_6
+            + multiplier_3 * rate_3_6
+            + multiplier_4 * r13_at_q5
+            + multiplier_5 * r23_at_q5
+            + multiplier_6 * r33_at_q5
+        )
+        step_length = sqrt(
+            step_q1 * step_q1
+            + step_q2 * step_q2
+            + step_q3 * step_q3
+            + step_q4 * step_q4
+            + step_q5 * step_q5
+            + step_q6 * step_q6
+        )
+        shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+        return (
+            error,
+            q1 + shrinking * step_q1,
+            q2 + shrinking * step_q2,
+            q3 + shrinking * step_q3,
+            q4 + shrinking * step_q4,
+            q5 + shrinking * step_q5,
+            q6 + shrinking * step_q6,
+        )
+
+    def _is_on_branch(self, given: Values) -> Values | Status:
+        """Whether joints are on the wanted branch."""
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist, x, y, z = given
+        k = self._constants
+        a1, a2, a3, d1, d4, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.j6_offset_x
+        one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        rate_1_1 = -one_by_machine_scale * y
+        z_minus_d1 = z - d1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_minus_z_at_q4 = z - z_at_q4
+        y_at_q2 = a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        z_minus_z_at_q5 = z - z_at_q5
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        sum_in_rate_1_6 = y_minus_y_at_q5 - j6_offset_x * r21_at_q5
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        sum_in_rate_1_6_2 = z_minus_z_at_q5 - j6_offset_x * r31_at_q5
+        rate_1_6 = one_by_machine_scale * (r23_at_q5 * sum_in_rate_1_6_2 - r33_at_q5 * sum_in_rate_1_6)
+        rate_2_1 = one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_at_q2 = a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        sum_in_rate_2_6 = x_minus_x_at_q5 - j6_offset_x * r11_at_q5
+        rate_2_6 = (r33_at_q5 * sum_in_rate_2_6 - r13_at_q5 * sum_in_rate_1_6_2) * one_by_machine_scale
+        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * sum_in_rate_1_6 - r23_at_q5 * sum_in_rate_2_6)
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
@@ -1788,17 +1609,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (),
         )
         fits = (
-            meets_pose
-            and ((sin_q4 if searched else cos_q5) * wanted_wrist >= -1e-6)
+            ((sin_q4 if searched else cos_q5) * wanted_wrist >= -1e-6)
             and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * quotient_in_fits >= -1e-6)
             and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
             and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
         )
-        return (fits, meets_pose, q1, q2, q3, q4, q5, q6)
+        return (fits,)
 
     def _find_root(self, given: Values) -> Values | Status:
-        """The joints at the root nearest to the start, or next ahead of it; zeros where there is none."""
+        """The joints at the root nearest to the start, or next ahead of it."""
         (
+            bound_of_fifth,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -1812,6 +1633,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_y,
             goal_z,
             looked_for,
+            noise,
             onward,
             reference_a1,
             reference_a2,
@@ -1820,102 +1642,120 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wanted_elbow,
             wanted_shoulder,
             wanted_wrist,
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            _,
+            _,
+            _,
         ) = given
-        if looked_for:
-            found = self._compute_wave(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                )
-            )
-            if isinstance(found, Status):
-                return found
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-            ) = found
-        else:
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        begin = 1e-7 + start if onward else 0.1
-        end_of_circle = begin + (360.0 * DEGREE - 2e-7 if onward else 360.0 * DEGREE)
-        # the parts of the circle, and their starts
+        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        # one step of the search
         (
+            stage,
+            direction,
             place,
-            low_before,
-            high_before,
-            start_before,
-            side_before,
-            steps_before,
-            starts_left,
+            width,
+            side,
+            number_of_start,
+            shortest,
+            aside,
+            error_before,
+            steps_left,
+            was_mirrored,
             nearest,
-            mirrored,
+            passes_left,
+            at,
+            trials,
+            best,
+            least,
+            way,
+            last,
+            growth_before,
+            bend,
+            q1,
+            met_from_q1,
             kept_q1,
+            q2,
+            met_from_q2,
             kept_q2,
+            q3,
+            met_from_q3,
             kept_q3,
+            q4,
+            met_from_q4,
             kept_q4,
+            q5,
+            met_from_q5,
             kept_q5,
+            q6,
+            met_from_q6,
             kept_q6,
-            mirror_q1,
-            mirror_q2,
-            mirror_q3,
-            mirror_q4,
-            mirror_q5,
-            mirror_q6,
-        ) = begin, begin, begin, 0, 1, 1000, 320, 9.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for _ in range(640):
-            is_between = start_before == 0
-            if is_between and (place < end_of_circle):
-                found = self._find_part(
+        ) = (
+            0,
+            1,
+            (1e-7 if onward else 0.0),
+            0.0,
+            1,
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0,
+            False,
+            9.0,
+            2000,
+            0.0,
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
+        for _ in range(2001):
+            place_plus_width = place + width
+            if stage == 0:
+                found = self._look_at_wave(
                     (
-                        place,
-                        end_of_circle,
+                        place_plus_width,
+                        bound_of_fifth,
+                        direction,
                         noise,
-                        steps_before,
+                        start,
                         wave_cos_0,
                         wave_cos_1,
                         wave_cos_2,
@@ -1937,16 +1777,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
                 if isinstance(found, Status):
                     return found
-                low, high, is_part, steps_still_left = found
+                is_rounding, safe_step = found
             else:
-                low, high, is_part, steps_still_left = (0.0, 0.0, False, 0.0)
-            low_now = low if is_between else low_before
-            high_now = high if is_between else high_before
-            number_now = 1 if is_between else start_before
-            has_part = is_part or (not is_between)
-            is_new = has_part and (mirrored == 0)
-            if is_new:
-                found = self._settle_joint(
+                is_rounding, safe_step = (False, 0.0)
+            real_of_direction = direction
+            if (stage == 1) or (stage == 2):
+                found = self._try_joint(
                     (
                         goal_r11,
                         goal_r12,
@@ -1960,22 +1796,40 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_x,
                         goal_y,
                         goal_z,
-                        high_now,
-                        low_now,
                         reference_a1,
                         reference_a2,
-                        side_before,
-                        number_now,
+                        side,
+                        start + at * real_of_direction,
                         wanted_elbow,
                         wanted_shoulder,
                     )
                 )
                 if isinstance(found, Status):
                     return found
-                settled_, remains = found
+                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = found
             else:
-                settled_, remains = (0.0, 0.0)
-            is_near = is_new and (remains <= 0.001)
+                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = (
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                    0.0,
+                )
+            size = (length_2 if number_of_start > 12 else length_1) if stage == 1 else abs(remainder)
+            is_less = size < least
+            best_now = at if is_less else best
+            least_now = size if is_less else least
+            way_now = real_of_direction * remainder / (rate if abs(rate) > 0.0 else 1e30) if is_less else 0.25 * way
+            best_now_minus_way_now = best_now - way_now
+            newton_place = (
+                place
+                if best_now_minus_way_now < place
+                else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
+            )
+            is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 24) or (abs(at - newton_place) <= 0.0))
+            is_near = is_settled and (least_now <= 0.001) and ((room_of_trial <= 1e-6) or (width > 1e-9) or (side > 0))
             if is_near:
                 found = self._joints_at(
                     (
@@ -1993,8 +1847,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_z,
                         reference_a1,
                         reference_a2,
-                        side_before,
-                        settled_,
+                        side,
+                        start + best_now * real_of_direction,
                         wanted_elbow,
                         wanted_shoulder,
                     )
@@ -2004,22 +1858,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
             else:
                 begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-            is_tried = has_part and (is_near or (not is_new))
-            start_q1 = begun_q1 if is_new else mirror_q1
-            start_q2 = begun_q2 if is_new else mirror_q2
-            start_q3 = begun_q3 if is_new else mirror_q3
-            start_q4 = begun_q4 if is_new else mirror_q4
-            start_q5 = begun_q5 if is_new else mirror_q5
-            start_q6 = begun_q6 if is_new else mirror_q6
-            if is_tried:
-                found = self._finish_root(
+            if stage == 3:
+                found = self._step_on_closure(
                     (
-                        start_q1,
-                        start_q2,
-                        start_q3,
-                        start_q4,
-                        start_q5,
-                        start_q6,
                         goal_r11,
                         goal_r12,
                         goal_r13,
@@ -2032,100 +1873,295 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_x,
                         goal_y,
                         goal_z,
-                        wanted_crossing,
-                        wanted_elbow,
-                        wanted_shoulder,
-                        wanted_wrist,
+                        q1,
+                        q2,
+                        q3,
+                        q4,
+                        q5,
+                        q6,
                     )
                 )
                 if isinstance(found, Status):
                     return found
-                fits, meets_pose, joint_q1, joint_q2, joint_q3, joint_q4, joint_q5, joint_q6 = found
+                error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
             else:
-                fits, meets_pose, joint_q1, joint_q2, joint_q3, joint_q4, joint_q5, joint_q6 = (
-                    False,
-                    False,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
+                error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            steps_end = (stage == 3) and (
+                (error <= 1e-14)
+                or (steps_left <= 0)
+                or ((error <= 1e-11) and ((steps_left <= 0) or (2.0 * error > error_before)))
+            )
+            meets_pose = steps_end and (error <= 1e-11)
+            if meets_pose:
+                found = self._is_on_branch(
+                    (q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist)
                 )
-            mirrors = is_near and meets_pose and (not fits)
-            high_now_minus_low_now = high_now - low_now
-            number_now_plus_one = 1 + number_now
-            value_in_next_start = (
-                number_now_plus_one
-                if number_now
-                < (
-                    1
-                    if high_now_minus_low_now <= 1e-9
-                    else (3 if high_now_minus_low_now <= 0.0001 else (5 if high_now_minus_low_now <= 0.01 else 9))
-                )
-                else (
-                    (10 if high_now_minus_low_now > 1e-6 else 0)
-                    if number_now <= 9
-                    else (number_now_plus_one if number_now < 15 else 0)
+                if isinstance(found, Status):
+                    return found
+                (fits,) = found
+            else:
+                (fits,) = (False,)
+            way_ends = (
+                (stage == 0)
+                and (width <= 0.0)
+                and (
+                    place
+                    >= (sum_in_way_ends if onward else (2e-7 + nearest if nearest < 180.0 * DEGREE else 180.0 * DEGREE))
                 )
             )
-            next_start = number_now if mirrors or (side_before >= 0) else value_in_next_start
-            goes_on = has_part and (next_start > 0)
-            next_side = side_before if mirrors else -side_before
-            steps_now = steps_still_left if is_between else steps_before
-            start_minus_joint_q6 = start - joint_q6
+            start_minus_q6 = start - q6
             distance = (
                 1e-7
                 + 180.0 * DEGREE
                 + arctan2(
-                    -sin(1e-7 + 180.0 * DEGREE + start_minus_joint_q6) + 0.0,
-                    cos(1e-7 + 180.0 * DEGREE + start_minus_joint_q6) + 0.0,
+                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
                 )
                 if onward
-                else abs(arctan2(-sin(1e-7 + start_minus_joint_q6) + 0.0, cos(1e-7 + start_minus_joint_q6) + 0.0))
+                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
             )
             is_better = (
                 fits
+                and meets_pose
                 and (distance < nearest)
-                and ((not onward) or ((distance > 1e-7) and (distance < 360.0 * DEGREE - 1e-7)))
+                and ((not onward) or ((distance > 1e-7) and (distance < sum_in_way_ends)))
             )
-            mirror_now_q1 = 2.0 * start_q1 - joint_q1
-            mirror_now_q2 = 2.0 * start_q2 - joint_q2
-            mirror_now_q3 = 2.0 * start_q3 - joint_q3
-            mirror_now_q4 = 2.0 * start_q4 - joint_q4
-            mirror_now_q5 = 2.0 * start_q5 - joint_q5
-            mirror_now_q6 = 2.0 * start_q6 - joint_q6
-            if (
-                (not looked_for)
-                or (place >= end_of_circle)
-                or (starts_left <= 0)
-                or (is_between and onward and (nearest < 9.0))
-            ):
+            nearest_now = distance if is_better else nearest
+            is_shortest = (stage == 1) and (trials >= 21)
+            moved = (
+                abs(met_from_q1 - q1)
+                + abs(met_from_q2 - q2)
+                + abs(met_from_q3 - q3)
+                + abs(met_from_q4 - q4)
+                + abs(met_from_q5 - q5)
+                + abs(met_from_q6 - q6)
+            )
+            mirrors = meets_pose and (not fits) and (not was_mirrored) and (moved > 1e-8)
+            part_ends = (stage == 0) and (width > 0.0) and ((not is_rounding) or (width >= 0.5))
+            start_ends = (is_settled and (not is_near)) or (steps_end and (not mirrors))
+            number_of_start_plus_one = 1 + number_of_start
+            next_number = (
+                number_of_start_plus_one
+                if number_of_start < (1 if width <= 1e-9 else (3 if width <= 0.0001 else (5 if width <= 0.01 else 9)))
+                else (
+                    (10 if width > 1e-6 else 0)
+                    if number_of_start <= 9
+                    else (number_of_start_plus_one if number_of_start < 15 else 0)
+                )
+            )
+            part_is_done = start_ends and (next_number == 0) and (side <= 0)
+            begins = (not part_is_done) and (part_ends or start_ends)
+            side_ends = start_ends and (next_number == 0) and (side > 0)
+            is_first = part_ends or side_ends
+            number_now = 1 if is_first else (next_number if start_ends else number_of_start)
+            seeks_length = begins and ((number_now == 10) or (number_now == 13))
+            next_stage = (
+                3
+                if is_near or mirrors or ((not steps_end) and (stage == 3))
+                else (
+                    1
+                    if seeks_length or ((not is_shortest) and (stage == 1))
+                    else (
+                        2
+                        if is_shortest or (begins and (not seeks_length)) or ((not is_settled) and (stage == 2))
+                        else 0
+                    )
+                )
+            )
+            turns_back = way_ends and (not onward) and (direction > 0)
+            is_over = (
+                (passes_left <= 0)
+                or (way_ends and (not turns_back))
+                or (onward and (next_stage == 0) and (nearest_now < 9.0))
+            )
+            direction_next = -1 if turns_back else direction
+            place_next = (
+                0.0
+                if turns_back
+                else (
+                    place_plus_width
+                    if part_is_done
+                    else (place + safe_step if (not is_rounding) and (stage == 0) and (width <= 0.0) else place)
+                )
+            )
+            width_next = (
+                0.0
+                if turns_back
+                else (
+                    0.0
+                    if part_is_done
+                    else (
+                        (2.0 * width if width > 0.0 else (1e-13 if is_rounding else 0.0))
+                        if (not part_ends) and (stage == 0)
+                        else width
+                    )
+                )
+            )
+            side_next = 1 if part_ends else (-1 if side_ends else side)
+            shortest_now = best_now if is_shortest else shortest
+            growth = (growth_2 if number_of_start > 12 else growth_1) * real_of_direction
+            gap = growth - growth_before
+            way_of_trial = at - last
+            bend_now = (
+                gap / (way_of_trial if (trials > 9) and (gap * way_of_trial > 0.0) else 1.0)
+                if (trials > 9) and (gap * way_of_trial > 0.0)
+                else bend
+            )
+            bend_now_2 = bend_now if bend_now > 0.0 else 1.0
+            aside_now = (
+                (1.7 * least_now / (sqrt(bend_now_2) if bend_now_2 > 0.0 else 0.0) if bend_now > 0.0 else 0.0)
+                if is_shortest
+                else aside
+            )
+            error_before_next = 9.0 if is_near or mirrors else error
+            steps_left_next = 64 if is_near or mirrors else steps_left + (-8 if error > 0.999 * error_before else -1)
+            was_mirrored_next = (not is_near) and (mirrors or was_mirrored)
+            passes_left_next = passes_left - 1
+            spread = 0.125 * width
+            spread_times_1_by_4 = 0.25 * spread
+            best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4
+            at_minus_growth_by_bend_now = at - growth / bend_now_2
+            value_in_shortening_place = (
+                best_now
+                if trials < 9
+                else (
+                    (
+                        best_now - spread_times_1_by_4
+                        if best_now_plus_spread_times_1_by_4 > place_plus_width
+                        else best_now_plus_spread_times_1_by_4
+                    )
+                    if trials == 9
+                    else (
+                        place
+                        if at_minus_growth_by_bend_now < place
+                        else (
+                            place_plus_width
+                            if at_minus_growth_by_bend_now > place_plus_width
+                            else at_minus_growth_by_bend_now
+                        )
+                    )
+                )
+            )
+            shortening_place = place + (1.0 + trials) * spread if trials < 8 else value_in_shortening_place
+            value_in_place_of_start = (
+                aside_now + shortest_now
+                if (number_now == 11) or (number_now == 14)
+                else (shortest_now - aside_now if (number_now == 12) or (number_now == 15) else shortest_now)
+            )
+            sum_in_place_of_start = (
+                place
+                + (
+                    0.875
+                    if number_now == 9
+                    else (
+                        0.625
+                        if number_now == 8
+                        else (
+                            0.375
+                            if number_now == 7
+                            else (
+                                0.125
+                                if number_now == 6
+                                else (
+                                    0.75
+                                    if number_now == 5
+                                    else (
+                                        0.25
+                                        if number_now == 4
+                                        else (1.0 if number_now == 3 else (0.0 if number_now == 2 else 0.5))
+                                    )
+                                )
+                            )
+                        )
+                    )
+                )
+                * width
+            )
+            place_of_start = (
+                place
+                if seeks_length
+                else (
+                    (
+                        place
+                        if value_in_place_of_start < place
+                        else (
+                            place_plus_width if value_in_place_of_start > place_plus_width else value_in_place_of_start
+                        )
+                    )
+                    if number_now > 9
+                    else sum_in_place_of_start
+                )
+            )
+            at_next = place_of_start if begins or is_shortest else (shortening_place if stage == 1 else newton_place)
+            trials_next = 0 if begins or is_shortest else 1 + trials
+            best_next = place_of_start if begins or is_shortest else best_now
+            least_next = 1e30 if begins or is_shortest else least_now
+            way_next = 0.0 if begins or is_shortest else way_now
+            last_next = place_of_start if begins or is_shortest else at
+            growth_before_next = 0.0 if begins or is_shortest else growth
+            bend_next = 0.0 if begins or is_shortest else bend_now
+            q1_next = begun_q1 if is_near else (2.0 * met_from_q1 - q1 if mirrors else moved_q1)
+            met_from_q1_next = begun_q1 if is_near else met_from_q1
+            kept_q1_next = q1 if is_better else kept_q1
+            q2_next = begun_q2 if is_near else (2.0 * met_from_q2 - q2 if mirrors else moved_q2)
+            met_from_q2_next = begun_q2 if is_near else met_from_q2
+            kept_q2_next = q2 if is_better else kept_q2
+            q3_next = begun_q3 if is_near else (2.0 * met_from_q3 - q3 if mirrors else moved_q3)
+            met_from_q3_next = begun_q3 if is_near else met_from_q3
+            kept_q3_next = q3 if is_better else kept_q3
+            q4_next = begun_q4 if is_near else (2.0 * met_from_q4 - q4 if mirrors else moved_q4)
+            met_from_q4_next = begun_q4 if is_near else met_from_q4
+            kept_q4_next = q4 if is_better else kept_q4
+            q5_next = begun_q5 if is_near else (2.0 * met_from_q5 - q5 if mirrors else moved_q5)
+            met_from_q5_next = begun_q5 if is_near else met_from_q5
+            kept_q5_next = q5 if is_better else kept_q5
+            q6_next = begun_q6 if is_near else (2.0 * met_from_q6 - q6 if mirrors else moved_q6)
+            met_from_q6_next = begun_q6 if is_near else met_from_q6
+            kept_q6_next = q6 if is_better else kept_q6
+            if is_over or (not looked_for):
                 break
-            place = place if goes_on else high_now
-            low_before = low_now
-            high_before = high_now
-            start_before = next_start if goes_on else 0
-            side_before = next_side if goes_on else 1
-            steps_before = steps_now
-            starts_left = starts_left + (-1 if has_part else 0)
-            nearest = distance if is_better else nearest
-            mirrored = 1 if mirrors else 0
-            kept_q1 = joint_q1 if is_better else kept_q1
-            kept_q2 = joint_q2 if is_better else kept_q2
-            kept_q3 = joint_q3 if is_better else kept_q3
-            kept_q4 = joint_q4 if is_better else kept_q4
-            kept_q5 = joint_q5 if is_better else kept_q5
-            kept_q6 = joint_q6 if is_better else kept_q6
-            mirror_q1 = mirror_now_q1
-            mirror_q2 = mirror_now_q2
-            mirror_q3 = mirror_now_q3
-            mirror_q4 = mirror_now_q4
-            mirror_q5 = mirror_now_q5
-            mirror_q6 = mirror_now_q6
+            stage = next_stage
+            direction = direction_next
+            place = place_next
+            width = width_next
+            side = side_next
+            number_of_start = number_now
+            shortest = shortest_now
+            aside = aside_now
+            error_before = error_before_next
+            steps_left = steps_left_next
+            was_mirrored = was_mirrored_next
+            nearest = nearest_now
+            passes_left = passes_left_next
+            at = at_next
+            trials = trials_next
+            best = best_next
+            least = least_next
+            way = way_next
+            last = last_next
+            growth_before = growth_before_next
+            bend = bend_next
+            q1 = q1_next
+            met_from_q1 = met_from_q1_next
+            kept_q1 = kept_q1_next
+            q2 = q2_next
+            met_from_q2 = met_from_q2_next
+            kept_q2 = kept_q2_next
+            q3 = q3_next
+            met_from_q3 = met_from_q3_next
+            kept_q3 = kept_q3_next
+            q4 = q4_next
+            met_from_q4 = met_from_q4_next
+            kept_q4 = kept_q4_next
+            q5 = q5_next
+            met_from_q5 = met_from_q5_next
+            kept_q5 = kept_q5_next
+            q6 = q6_next
+            met_from_q6 = met_from_q6_next
+            kept_q6 = kept_q6_next
         return (
-            nearest < 9.0,
-            (nearest if nearest < 9.0 else 0.0),
+            nearest_now < 9.0,
+            (nearest_now if nearest_now < 9.0 else 0.0),
             kept_q1,
             kept_q2,
             kept_q3,
@@ -2148,10 +2184,58 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z
         ):
             return Status.BAD_INPUT
+        if searched:
+            found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z))
+            if isinstance(found, Status):
+                return found
+            (
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = found
+        else:
+            (
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
         return (
+            bound_of_fifth,
             r11,
             r12,
             r13,
@@ -2165,6 +2249,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             y,
             z,
             searched,
+            noise,
             False,
             reference_a1,
             reference_a2,
@@ -2173,6 +2258,23 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sigma_elbow,
             sigma_shoulder,
             sigma_wrist,
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
         )
 
     def _from_joints(self, joints: Reals, turns: Turns, reference: Reals) -> Reals | Status:
@@ -2461,12 +2563,60 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             return Diagnosis(
                 Status.UNREACHABLE, "without an offset, only the first branch of the crossing has a solution", 0.0
             )
+        if searched:
+            found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z))
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            (
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = found
+        else:
+            (
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
-        # root scan along A6
+        # root search along A6
         found = self._find_root(
             (
+                bound_of_fifth,
                 r11,
                 r12,
                 r13,
@@ -2480,6 +2630,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 y,
                 z,
                 searched,
+                noise,
                 False,
                 reference_a1,
                 reference_a2,
@@ -2488,6 +2639,23 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 sigma_elbow,
                 sigma_shoulder,
                 sigma_wrist,
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
             )
         )
         if isinstance(found, Status):
@@ -2852,7 +3020,25 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a root scan."""
-        return every_root(self._find_root, given, 16, 13)
+        return every_root(self._find_root, given, 18, 15)
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        solve = self._all_trusted  # a separate statement is faster
+        return solve(frame, reference) or super().branches(
+            frame, reference
+        )  # where digits may be lost, one branch after the other
+
+    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        solve = self._one_trusted
+        found = solve(frame, signs, reference)
+        return (
+            super().branch(frame, signs, reference) if found == () else found
+        )  # where digits may be lost, by the complete program
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
+        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _chain(self) -> tuple[Link, ...]:
         """The chain as it is described, from the base to the frame."""

@@ -30,7 +30,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector, Whole
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
     from softkin.ac6_rzryryrxryrz_j6offset import Constants
 
 
@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 3142
+    VALUES = 4292
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -247,16 +247,16 @@ class ArrayPrograms(Programs):
             r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
             factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
             r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
-            factor_297_part = (
+            factor_301_part = (
                 -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
             )
-            factor_298_part = (
-                factor_297_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            factor_302_part = (
+                factor_301_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_298_root_1_part = (
+            factor_302_root_1_part = (
                 2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_301_root_1_part = factor_298_part * factor_34_root_1_part + factor_298_root_1_part * factor_34_part
+            factor_305_root_1_part = factor_302_part * factor_34_root_1_part + factor_302_root_1_part * factor_34_part
             factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
             product_in_factor_151_part = factor_34_part * factor_47_root_3_part
             factor_151_part = factor_109_root_3_part * product_in_factor_151_part
@@ -334,18 +334,18 @@ class ArrayPrograms(Programs):
             r11_from_q123_part = factor_174_part + factor_178_part
             factor_202_part = r11_from_q123_part * sin_q6_tried
             r12_from_q123_before_q6_part = factor_198_part + factor_202_part
-            factor_304_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
-            product_306_root_1_part = factor_304_root_1_part - factor_301_root_1_part
-            factor_308_part = product_306_root_1_part * product_306_root_1_part
-            factor_309_part = -factor_308_part * factor_8_part
-            factor_300_part = -factor_298_root_1_part * product_in_factor_154_part
-            factor_301_part = factor_300_part + factor_298_part * factor_34_part
-            factor_303_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
-            factor_304_part = factor_303_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
-            product_306_part = factor_304_part - factor_301_part
-            factor_310_part = product_306_part * product_306_part
-            product_311_part = factor_310_part - factor_309_part
-            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_311_part
+            factor_308_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part
+            factor_312_part = product_310_root_1_part * product_310_root_1_part
+            factor_313_part = -factor_312_part * factor_8_part
+            factor_304_part = -factor_302_root_1_part * product_in_factor_154_part
+            factor_305_part = factor_304_part + factor_302_part * factor_34_part
+            factor_307_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_308_part = factor_307_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_310_part = factor_308_part - factor_305_part
+            factor_314_part = product_310_part * product_310_part
+            product_315_part = factor_314_part - factor_313_part
+            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_315_part
             level = 0.5 * taken
             cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
             sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
@@ -442,24 +442,24 @@ class ArrayPrograms(Programs):
                     wave_sin_10 + taken * sin_10,
                 ),
             )
+        sum_in_rounding_0 = absolute(wave_cos_7) + absolute(wave_sin_7)
+        sum_in_rounding_0_2 = absolute(wave_cos_3) + absolute(wave_sin_3)
+        sum_in_rounding_0_3 = absolute(wave_cos_6) + absolute(wave_sin_6)
+        sum_in_rounding_0_4 = absolute(wave_cos_1) + absolute(wave_sin_1)
+        sum_in_rounding_0_5 = absolute(wave_cos_2) + absolute(wave_sin_2)
+        sum_in_rounding_0_6 = absolute(wave_cos_4) + absolute(wave_sin_4)
+        sum_in_rounding_0_7 = absolute(wave_cos_8) + absolute(wave_sin_8)
+        sum_in_rounding_0_8 = absolute(wave_cos_5) + absolute(wave_sin_5)
         rounding_0 = 1e-14 * (
-            absolute(wave_cos_0)
-            + absolute(wave_cos_1)
-            + absolute(wave_cos_2)
-            + absolute(wave_cos_3)
-            + absolute(wave_cos_4)
-            + absolute(wave_cos_5)
-            + absolute(wave_cos_6)
-            + absolute(wave_cos_7)
-            + absolute(wave_cos_8)
-            + absolute(wave_sin_1)
-            + absolute(wave_sin_2)
-            + absolute(wave_sin_3)
-            + absolute(wave_sin_4)
-            + absolute(wave_sin_5)
-            + absolute(wave_sin_6)
-            + absolute(wave_sin_7)
-            + absolute(wave_sin_8)
+            sum_in_rounding_0
+            + sum_in_rounding_0_2
+            + sum_in_rounding_0_3
+            + sum_in_rounding_0_4
+            + sum_in_rounding_0_5
+            + sum_in_rounding_0_6
+            + sum_in_rounding_0_7
+            + sum_in_rounding_0_8
+            + absolute(wave_cos_0)
         )
         size_of_wave_cos_9_times_32 = 32.0 * absolute(wave_cos_9)
         rounding_1 = select(size_of_wave_cos_9_times_32 > rounding_0, size_of_wave_cos_9_times_32, rounding_0)
@@ -469,6 +469,16 @@ class ArrayPrograms(Programs):
         rounding_3 = select(size_of_wave_sin_9_times_32 > rounding_2, size_of_wave_sin_9_times_32, rounding_2)
         size_of_wave_sin_10_times_32 = 32.0 * absolute(wave_sin_10)
         rounding_4 = select(size_of_wave_sin_10_times_32 > rounding_3, size_of_wave_sin_10_times_32, rounding_3)
+        sum_in_bound_of_fifth = (
+            2.025 * sum_in_rounding_0_2
+            + 64.8 * sum_in_rounding_0_3
+            + 0.008333333333333333 * sum_in_rounding_0_4
+            + 0.26666666666666666 * sum_in_rounding_0_5
+            + 8.533333333333333 * sum_in_rounding_0_6
+            + 273.06666666666666 * sum_in_rounding_0_7
+            + 26.041666666666668 * sum_in_rounding_0_8
+        )
+        bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334 * sum_in_rounding_0
         return (
             wave_cos_0,
             wave_cos_1,
@@ -488,15 +498,17 @@ class ArrayPrograms(Programs):
             wave_sin_7,
             wave_sin_8,
             rounding_4,
+            bound_of_fifth,
         )
 
-    def find_part(self, given: Values, status: Codes) -> Values:
-        """The next part of the circle in which the wave may be zero."""
+    def look_at_wave(self, given: Values, status: Codes) -> Values:
+        """Whether the wave is rounding at an angle, and how far it does not vanish from there."""
         (
-            at,
-            end,
+            ahead_by,
+            bound_of_fifth,
+            direction,
             noise,
-            steps_left,
+            start,
             wave_cos_0,
             wave_cos_1,
             wave_cos_2,
@@ -515,165 +527,199 @@ class ArrayPrograms(Programs):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_bound_of_fifth = (
-            0.008333333333333333 * (absolute(wave_cos_1) + absolute(wave_sin_1))
-            + 0.26666666666666666 * (absolute(wave_cos_2) + absolute(wave_sin_2))
-            + 2.025 * (absolute(wave_cos_3) + absolute(wave_sin_3))
-            + 8.533333333333333 * (absolute(wave_cos_4) + absolute(wave_sin_4))
-            + 26.041666666666668 * (absolute(wave_cos_5) + absolute(wave_sin_5))
-            + 64.8 * (absolute(wave_cos_6) + absolute(wave_sin_6))
-            + 273.06666666666666 * (absolute(wave_cos_8) + absolute(wave_sin_8))
+        sum_in_cos_1 = start + direction * ahead_by
+        cos_1 = cos(sum_in_cos_1)
+        sin_1 = sin(sum_in_cos_1)
+        even_1 = wave_cos_1 * cos_1 + wave_sin_1 * sin_1
+        cos_2 = cos_1 * cos_1 - sin_1 * sin_1
+        sin_2 = 2.0 * cos_1 * sin_1
+        even_2 = wave_cos_2 * cos_2 + wave_sin_2 * sin_2
+        cos_3 = cos_1 * cos_2 - sin_1 * sin_2
+        sin_3 = cos_1 * sin_2 + cos_2 * sin_1
+        even_3 = wave_cos_3 * cos_3 + wave_sin_3 * sin_3
+        cos_4 = cos_1 * cos_3 - sin_1 * sin_3
+        sin_4 = cos_1 * sin_3 + cos_3 * sin_1
+        even_4 = wave_cos_4 * cos_4 + wave_sin_4 * sin_4
+        cos_5 = cos_1 * cos_4 - sin_1 * sin_4
+        sin_5 = cos_1 * sin_4 + cos_4 * sin_1
+        even_5 = wave_cos_5 * cos_5 + wave_sin_5 * sin_5
+        cos_6 = cos_1 * cos_5 - sin_1 * sin_5
+        sin_6 = cos_1 * sin_5 + cos_5 * sin_1
+        even_6 = wave_cos_6 * cos_6 + wave_sin_6 * sin_6
+        cos_7 = cos_1 * cos_6 - sin_1 * sin_6
+        sin_7 = cos_1 * sin_6 + cos_6 * sin_1
+        even_7 = wave_cos_7 * cos_7 + wave_sin_7 * sin_7
+        cos_8 = cos_1 * cos_7 - sin_1 * sin_7
+        sin_8 = cos_1 * sin_7 + cos_7 * sin_1
+        even_8 = wave_cos_8 * cos_8 + wave_sin_8 * sin_8
+        wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0
+        is_rounding = absolute(wave) <= noise
+        odd_1 = wave_sin_1 * cos_1 - wave_cos_1 * sin_1
+        odd_2 = wave_sin_2 * cos_2 - wave_cos_2 * sin_2
+        odd_3 = wave_sin_3 * cos_3 - wave_cos_3 * sin_3
+        odd_4 = wave_sin_4 * cos_4 - wave_cos_4 * sin_4
+        odd_5 = wave_sin_5 * cos_5 - wave_cos_5 * sin_5
+        odd_6 = wave_sin_6 * cos_6 - wave_cos_6 * sin_6
+        odd_7 = wave_sin_7 * cos_7 - wave_cos_7 * sin_7
+        odd_8 = wave_sin_8 * cos_8 - wave_cos_8 * sin_8
+        slope = direction * (
+            odd_1 + 2.0 * odd_2 + 3.0 * odd_3 + 4.0 * odd_4 + 5.0 * odd_5 + 6.0 * odd_6 + 7.0 * odd_7 + 8.0 * odd_8
         )
-        bound_of_fifth = sum_in_bound_of_fifth + 140.05833333333334 * (absolute(wave_cos_7) + absolute(wave_sin_7))
-        # steps around the circle that pass no zero of the wave
-        place, width, steps_still_left = initial(at, 0.0, steps_left)
-        for _ in range(1002):
-            angle = place + width
-            cos_1 = cos(angle)
-            sin_1 = sin(angle)
-            even_1 = wave_cos_1 * cos_1 + wave_sin_1 * sin_1
-            cos_2 = cos_1 * cos_1 - sin_1 * sin_1
-            sin_2 = 2.0 * cos_1 * sin_1
-            even_2 = wave_cos_2 * cos_2 + wave_sin_2 * sin_2
-            cos_3 = cos_1 * cos_2 - sin_1 * sin_2
-            sin_3 = cos_1 * sin_2 + cos_2 * sin_1
-            even_3 = wave_cos_3 * cos_3 + wave_sin_3 * sin_3
-            cos_4 = cos_1 * cos_3 - sin_1 * sin_3
-            sin_4 = cos_1 * sin_3 + cos_3 * sin_1
-            even_4 = wave_cos_4 * cos_4 + wave_sin_4 * sin_4
-            cos_5 = cos_1 * cos_4 - sin_1 * sin_4
-            sin_5 = cos_1 * sin_4 + cos_4 * sin_1
-            even_5 = wave_cos_5 * cos_5 + wave_sin_5 * sin_5
-            cos_6 = cos_1 * cos_5 - sin_1 * sin_5
-            sin_6 = cos_1 * sin_5 + cos_5 * sin_1
-            even_6 = wave_cos_6 * cos_6 + wave_sin_6 * sin_6
-            cos_7 = cos_1 * cos_6 - sin_1 * sin_6
-            sin_7 = cos_1 * sin_6 + cos_6 * sin_1
-            even_7 = wave_cos_7 * cos_7 + wave_sin_7 * sin_7
-            cos_8 = cos_1 * cos_7 - sin_1 * sin_7
-            sin_8 = cos_1 * sin_7 + cos_7 * sin_1
-            even_8 = wave_cos_8 * cos_8 + wave_sin_8 * sin_8
-            wave = even_1 + even_2 + even_3 + even_4 + even_5 + even_6 + even_7 + even_8 + wave_cos_0
-            is_rounding = absolute(wave) <= noise
-            is_over = ((place >= end) & (width <= 0.0)) | ((width > 0.0) & ((opposite(is_rounding)) | (width >= 0.5)))
-            half_noise_minus_size_of_wave = 0.5 * noise - absolute(wave)
-            room = select(-half_noise_minus_size_of_wave > 0.0, -half_noise_minus_size_of_wave, 0.0)
-            odd_1 = wave_sin_1 * cos_1 - wave_cos_1 * sin_1
-            odd_2 = wave_sin_2 * cos_2 - wave_cos_2 * sin_2
-            odd_3 = wave_sin_3 * cos_3 - wave_cos_3 * sin_3
-            odd_4 = wave_sin_4 * cos_4 - wave_cos_4 * sin_4
-            odd_5 = wave_sin_5 * cos_5 - wave_cos_5 * sin_5
-            odd_6 = wave_sin_6 * cos_6 - wave_cos_6 * sin_6
-            odd_7 = wave_sin_7 * cos_7 - wave_cos_7 * sin_7
-            odd_8 = wave_sin_8 * cos_8 - wave_cos_8 * sin_8
-            slope = (
-                odd_1 + 2.0 * odd_2 + 3.0 * odd_3 + 4.0 * odd_4 + 5.0 * odd_5 + 6.0 * odd_6 + 7.0 * odd_7 + 8.0 * odd_8
-            )
-            sign_of_wave = select(wave < 0.0, -1.0, 1.0)
-            sign_of_wave_times_slope = sign_of_wave * slope
-            falls_slope = select(-sign_of_wave_times_slope > 0.0, -sign_of_wave_times_slope, 0.0)
-            bend = (
-                -0.5 * even_1
-                - 2.0 * even_2
-                - 4.5 * even_3
-                - 8.0 * even_4
-                - 12.5 * even_5
-                - 18.0 * even_6
-                - 24.5 * even_7
-                - 32.0 * even_8
-            )
-            bend_times_sign_of_wave = bend * sign_of_wave
-            falls_bend = select(-bend_times_sign_of_wave > 0.0, -bend_times_sign_of_wave, 0.0)
-            third = (
-                -odd_1 / 6.0
-                - 4.0 * odd_2 / 3.0
-                - 4.5 * odd_3
-                - 32.0 * odd_4 / 3.0
-                - 125.0 * odd_5 / 6.0
-                - 36.0 * odd_6
-                - 343.0 * odd_7 / 6.0
-                - 256.0 * odd_8 / 3.0
-            )
-            sign_of_wave_times_third = sign_of_wave * third
-            falls_third = select(-sign_of_wave_times_third > 0.0, -sign_of_wave_times_third, 0.0)
-            fourth = (
-                even_1 / 24.0
-                + 2.0 * even_2 / 3.0
-                + 3.375 * even_3
-                + 32.0 * even_4 / 3.0
-                + 625.0 * even_5 / 24.0
-                + 54.0 * even_6
-                + 2401.0 * even_7 / 24.0
-                + 512.0 * even_8 / 3.0
-            )
-            fourth_times_sign_of_wave = fourth * sign_of_wave
-            falls_fourth = select(-fourth_times_sign_of_wave > 0.0, -fourth_times_sign_of_wave, 0.0)
-            curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third
-            falls_slope_squared = falls_slope * falls_slope
-            divisor_1 = falls_slope + root(falls_slope_squared + 4.0 * curve_1 * room)
-            twice_room = 2.0 * room
-            allowed_1 = select(divisor_1 > twice_room, 2.0 * room / select(divisor_1 > twice_room, divisor_1, 1.0), 1.0)
-            safe_1 = select(allowed_1 > 0.0, allowed_1, 0.0)
-            length_1 = root(safe_1)
-            curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_1) * length_1) * length_1
-            divisor_2 = falls_slope + root(falls_slope_squared + 4.0 * curve_2 * room)
-            allowed_2 = select(
-                divisor_2 * length_1 > twice_room,
-                2.0 * room / select(divisor_2 * length_1 > twice_room, divisor_2, 1.0),
-                length_1,
-            )
-            safe_2 = select(allowed_2 > safe_1, allowed_2, safe_1)
-            long_2 = select(divisor_2 * length_1 > twice_room, length_1, 1.0)
-            length_2 = root(long_2 * safe_2)
-            curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_2) * length_2) * length_2
-            divisor_3 = falls_slope + root(falls_slope_squared + 4.0 * curve_3 * room)
-            allowed_3 = select(
-                divisor_3 * length_2 > twice_room,
-                2.0 * room / select(divisor_3 * length_2 > twice_room, divisor_3, 1.0),
-                length_2,
-            )
-            safe_3 = select(allowed_3 > safe_2, allowed_3, safe_2)
-            long_3 = select(divisor_3 * length_2 > twice_room, length_2, long_2)
-            length_3 = root(long_3 * safe_3)
-            curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_3) * length_3) * length_3
-            divisor_4 = falls_slope + root(falls_slope_squared + 4.0 * curve_4 * room)
-            allowed_4 = select(
-                divisor_4 * length_3 > twice_room,
-                2.0 * room / select(divisor_4 * length_3 > twice_room, divisor_4, 1.0),
-                length_3,
-            )
-            safe_4 = select(allowed_4 > safe_3, allowed_4, safe_3)
-            long_4 = select(divisor_4 * length_3 > twice_room, length_3, long_3)
-            length_4 = root(long_4 * safe_4)
-            curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_4) * length_4) * length_4
-            divisor_5 = falls_slope + root(falls_slope_squared + 4.0 * curve_5 * room)
-            allowed_5 = select(
-                divisor_5 * length_4 > twice_room,
-                2.0 * room / select(divisor_5 * length_4 > twice_room, divisor_5, 1.0),
-                length_4,
-            )
-            safe_5 = select(allowed_5 > safe_4, allowed_5, safe_4)
-            long_5 = select(divisor_5 * length_4 > twice_room, length_4, long_4)
-            length_5 = root(long_5 * safe_5)
-            curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_5) * length_5) * length_5
-            divisor_6 = falls_slope + root(falls_slope_squared + 4.0 * curve_6 * room)
-            allowed_6 = select(
-                divisor_6 * length_5 > twice_room,
-                2.0 * room / select(divisor_6 * length_5 > twice_room, divisor_6, 1.0),
-                length_5,
-            )
-            safe_6 = select(allowed_6 > safe_5, allowed_6, safe_5)
-            way = select(is_rounding | (width > 0.0), 0.0, select(safe_6 > 1e-15, safe_6, 1e-15))
-            done = is_over | (steps_still_left <= 0)
-            if settled(done, status):
-                break
-            place, width, steps_still_left = advanced(
-                done,
-                (place, width, steps_still_left),
-                (place + way, select(width > 0.0, 2.0 * width, select(is_rounding, 1e-13, 0.0)), steps_still_left - 1),
-            )
-        is_part = is_over & (width > 0.0)
-        return (select(is_part, place, end), select(is_part, angle, end), is_part, steps_still_left)
+        sign_of_wave = select(wave < 0.0, -1.0, 1.0)
+        falls_slope = -sign_of_wave * slope
+        bend = (
+            -0.5 * even_1
+            - 2.0 * even_2
+            - 4.5 * even_3
+            - 8.0 * even_4
+            - 12.5 * even_5
+            - 18.0 * even_6
+            - 24.5 * even_7
+            - 32.0 * even_8
+        )
+        bend_times_sign_of_wave = bend * sign_of_wave
+        falls_bend = select(-bend_times_sign_of_wave > 0.0, -bend_times_sign_of_wave, 0.0)
+        third = (
+            -odd_1 / 6.0
+            - 4.0 * odd_2 / 3.0
+            - 4.5 * odd_3
+            - 32.0 * odd_4 / 3.0
+            - 125.0 * odd_5 / 6.0
+            - 36.0 * odd_6
+            - 343.0 * odd_7 / 6.0
+            - 256.0 * odd_8 / 3.0
+        ) * direction
+        sign_of_wave_times_third = sign_of_wave * third
+        falls_third = select(-sign_of_wave_times_third > 0.0, -sign_of_wave_times_third, 0.0)
+        fourth = (
+            even_1 / 24.0
+            + 2.0 * even_2 / 3.0
+            + 3.375 * even_3
+            + 32.0 * even_4 / 3.0
+            + 625.0 * even_5 / 24.0
+            + 54.0 * even_6
+            + 2401.0 * even_7 / 24.0
+            + 512.0 * even_8 / 3.0
+        )
+        fourth_times_sign_of_wave = fourth * sign_of_wave
+        falls_fourth = select(-fourth_times_sign_of_wave > 0.0, -fourth_times_sign_of_wave, 0.0)
+        curve_1 = bound_of_fifth + falls_bend + falls_fourth + falls_third
+        half_noise_minus_size_of_wave = 0.5 * noise - absolute(wave)
+        room = select(-half_noise_minus_size_of_wave > 0.0, -half_noise_minus_size_of_wave, 0.0)
+        falls_slope_squared = falls_slope * falls_slope
+        root_1 = root(falls_slope_squared + 4.0 * curve_1 * room)
+        twice_room = 2.0 * room
+
+        def elsewhere_value_in_allowed_1(curve_1: Real, falls_slope: Real, root_1: Real) -> Reals:
+            value_in_allowed_1 = 2.0 * curve_1
+            value_in_allowed_1_2 = root_1 - falls_slope
+            return (value_in_allowed_1, value_in_allowed_1_2)
+
+        value_in_allowed_1 = falls_slope + root_1
+        value_in_allowed_1, value_in_allowed_1_2 = elsewhere(
+            falls_slope > 0.0,
+            (value_in_allowed_1, twice_room),
+            elsewhere_value_in_allowed_1,
+            (curve_1, falls_slope, root_1),
+        )
+        allowed_1 = value_in_allowed_1_2 / value_in_allowed_1
+        safe_1 = select(value_in_allowed_1 > value_in_allowed_1_2, select(allowed_1 > 0.0, allowed_1, 0.0), 1.0)
+        length_1 = root(safe_1)
+        curve_2 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_1) * length_1) * length_1
+        root_2 = root(falls_slope_squared + 4.0 * curve_2 * room)
+
+        def elsewhere_value_in_long_2(curve_2: Real, falls_slope: Real, root_2: Real) -> Reals:
+            value_in_long_2 = 2.0 * curve_2
+            value_in_long_2_2 = root_2 - falls_slope
+            return (value_in_long_2, value_in_long_2_2)
+
+        value_in_long_2 = falls_slope + root_2
+        value_in_long_2, value_in_long_2_2 = elsewhere(
+            falls_slope > 0.0, (value_in_long_2, twice_room), elsewhere_value_in_long_2, (curve_2, falls_slope, root_2)
+        )
+        allowed_2 = value_in_long_2_2 / value_in_long_2
+        holds = length_1 * value_in_long_2 > value_in_long_2_2
+        allowed_2 = select(holds, allowed_2, length_1)
+        long_2 = select(holds, length_1, 1.0)
+        safe_2 = select(allowed_2 > safe_1, allowed_2, safe_1)
+        length_2 = root(long_2 * safe_2)
+        curve_3 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_2) * length_2) * length_2
+        root_3 = root(falls_slope_squared + 4.0 * curve_3 * room)
+
+        def elsewhere_value_in_long_3(curve_3: Real, falls_slope: Real, root_3: Real) -> Reals:
+            value_in_long_3 = 2.0 * curve_3
+            value_in_long_3_2 = root_3 - falls_slope
+            return (value_in_long_3, value_in_long_3_2)
+
+        value_in_long_3 = falls_slope + root_3
+        value_in_long_3, value_in_long_3_2 = elsewhere(
+            falls_slope > 0.0, (value_in_long_3, twice_room), elsewhere_value_in_long_3, (curve_3, falls_slope, root_3)
+        )
+        allowed_3 = value_in_long_3_2 / value_in_long_3
+        holds = length_2 * value_in_long_3 > value_in_long_3_2
+        allowed_3 = select(holds, allowed_3, length_2)
+        long_3 = select(holds, length_2, long_2)
+        safe_3 = select(allowed_3 > safe_2, allowed_3, safe_2)
+        length_3 = root(long_3 * safe_3)
+        curve_4 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_3) * length_3) * length_3
+        root_4 = root(falls_slope_squared + 4.0 * curve_4 * room)
+
+        def elsewhere_value_in_long_4(curve_4: Real, falls_slope: Real, root_4: Real) -> Reals:
+            value_in_long_4 = 2.0 * curve_4
+            value_in_long_4_2 = root_4 - falls_slope
+            return (value_in_long_4, value_in_long_4_2)
+
+        value_in_long_4 = falls_slope + root_4
+        value_in_long_4, value_in_long_4_2 = elsewhere(
+            falls_slope > 0.0, (value_in_long_4, twice_room), elsewhere_value_in_long_4, (curve_4, falls_slope, root_4)
+        )
+        allowed_4 = value_in_long_4_2 / value_in_long_4
+        holds = length_3 * value_in_long_4 > value_in_long_4_2
+        allowed_4 = select(holds, allowed_4, length_3)
+        long_4 = select(holds, length_3, long_3)
+        safe_4 = select(allowed_4 > safe_3, allowed_4, safe_3)
+        length_4 = root(long_4 * safe_4)
+        curve_5 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_4) * length_4) * length_4
+        root_5 = root(falls_slope_squared + 4.0 * curve_5 * room)
+
+        def elsewhere_value_in_long_5(curve_5: Real, falls_slope: Real, root_5: Real) -> Reals:
+            value_in_long_5 = 2.0 * curve_5
+            value_in_long_5_2 = root_5 - falls_slope
+            return (value_in_long_5, value_in_long_5_2)
+
+        value_in_long_5 = falls_slope + root_5
+        value_in_long_5, value_in_long_5_2 = elsewhere(
+            falls_slope > 0.0, (value_in_long_5, twice_room), elsewhere_value_in_long_5, (curve_5, falls_slope, root_5)
+        )
+        allowed_5 = value_in_long_5_2 / value_in_long_5
+        holds = length_4 * value_in_long_5 > value_in_long_5_2
+        allowed_5 = select(holds, allowed_5, length_4)
+        long_5 = select(holds, length_4, long_4)
+        safe_5 = select(allowed_5 > safe_4, allowed_5, safe_4)
+        length_5 = root(long_5 * safe_5)
+        curve_6 = falls_bend + (falls_third + (falls_fourth + bound_of_fifth * length_5) * length_5) * length_5
+        root_6 = root(falls_slope_squared + 4.0 * curve_6 * room)
+
+        def elsewhere_value_in_allowed_6(curve_6: Real, falls_slope: Real, root_6: Real) -> Reals:
+            value_in_allowed_6 = 2.0 * curve_6
+            value_in_allowed_6_2 = root_6 - falls_slope
+            return (value_in_allowed_6, value_in_allowed_6_2)
+
+        value_in_allowed_6 = falls_slope + root_6
+        value_in_allowed_6, value_in_allowed_6_2 = elsewhere(
+            falls_slope > 0.0,
+            (value_in_allowed_6, twice_room),
+            elsewhere_value_in_allowed_6,
+            (curve_6, falls_slope, root_6),
+        )
+        allowed_6 = select(
+            length_5 * value_in_allowed_6 > value_in_allowed_6_2,
+            value_in_allowed_6_2
+            / select(length_5 * value_in_allowed_6 > value_in_allowed_6_2, value_in_allowed_6, 1.0),
+            length_5,
+        )
+        safe_6 = select(allowed_6 > safe_5, allowed_6, safe_5)
+        return (is_rounding, select(safe_6 > 1e-15, safe_6, 1e-15))
 
     def try_joint(self, given: Values, status: Codes) -> Values:
         """The residual of the closure at a trial, with its slope, and lengths that turn angles."""
@@ -893,253 +939,16 @@ class ArrayPrograms(Programs):
         slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
+        room_tried = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
         return (
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
+            room_tried,
             distance_q1_tried,
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
             reach_tried * slope_reach_tried,
         )
-
-    def find_shortest(self, given: Values, status: Codes) -> Values:
-        """Where a length that turns an angle is shortest, and how far beside it turns by a sixth."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            high,
-            low,
-            reference_a1,
-            reference_a2,
-            side,
-            wanted_elbow,
-            wanted_shoulder,
-            which_length,
-        ) = given
-        high_minus_low = high - low
-        high_minus_low_times_1_by_32 = high_minus_low / 32.0
-        # where the length is shortest
-        place, best_place, least, last_place, growth_before, bend, steps = initial(low, low, 1e30, low, 0.0, 0.0, 0)
-        for _ in range(22):
-            found = self.try_joint(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                    reference_a1,
-                    reference_a2,
-                    side,
-                    place,
-                    wanted_elbow,
-                    wanted_shoulder,
-                ),
-                status,
-            )
-            _, _, length_1, growth_1, length_2, growth_2 = found
-            growth = select(which_length == 2, growth_2, growth_1)
-            length = select(which_length == 2, length_2, length_1)
-            is_less = length < least
-            best_now = select(is_less, place, best_place)
-            gap = growth - growth_before
-            way = place - last_place
-            bend_now = select((steps > 9) & (gap * way > 0.0), gap / select(gap * way > 0.0, way, 1.0), bend)
-            bend_now_2 = select(bend_now > 0.0, bend_now, 1.0)
-            place_minus_growth_by_bend_now = place - growth / bend_now_2
-            sum_in_next_place = best_now + high_minus_low_times_1_by_32
-            next_place = select(
-                steps < 8,
-                low + 0.125 * (1.0 + steps) * high_minus_low,
-                select(
-                    steps < 9,
-                    best_now,
-                    select(
-                        steps == 9,
-                        select(sum_in_next_place > high, best_now - high_minus_low_times_1_by_32, sum_in_next_place),
-                        select(
-                            place_minus_growth_by_bend_now < low,
-                            low,
-                            select(place_minus_growth_by_bend_now > high, high, place_minus_growth_by_bend_now),
-                        ),
-                    ),
-                ),
-            )
-            shared_value = select(is_less, length, least)
-            done = steps >= 21
-            if settled(done, status):
-                break
-            place, best_place, least, last_place, growth_before, bend, steps = advanced(
-                done,
-                (place, best_place, least, last_place, growth_before, bend, steps),
-                (next_place, best_now, shared_value, last_place + way, growth, bend_now, 1 + steps),
-            )
-        return (best_now, select(bend_now > 0.0, 1.7 * shared_value / root(bend_now_2), 0.0))
-
-    def settle_joint(self, given: Values, status: Codes) -> Values:
-        """The joint value next to a start at which the residual is smallest."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            high,
-            low,
-            reference_a1,
-            reference_a2,
-            side,
-            start_number,
-            wanted_elbow,
-            wanted_shoulder,
-        ) = given
-        is_at_length = start_number > 9
-        found = run_where(
-            is_at_length,
-            self.find_shortest,
-            (
-                goal_r11,
-                goal_r12,
-                goal_r13,
-                goal_r21,
-                goal_r22,
-                goal_r23,
-                goal_r31,
-                goal_r32,
-                goal_r33,
-                goal_x,
-                goal_y,
-                goal_z,
-                high,
-                low,
-                reference_a1,
-                reference_a2,
-                side,
-                wanted_elbow,
-                wanted_shoulder,
-                select(start_number > 12, 2, 1),
-            ),
-            status,
-            (0.0, 0.0),
-        )
-        shortest_place, aside = found
-        part_width = high - low
-
-        def elsewhere_start_of_steps(low: Real, part_width: Real, start_number: Whole) -> Reals:
-            value_in_start_of_steps = select(
-                start_number == 9,
-                0.875,
-                select(
-                    start_number == 8,
-                    0.625,
-                    select(
-                        start_number == 7,
-                        0.375,
-                        select(
-                            start_number == 6,
-                            0.125,
-                            select(
-                                start_number == 5,
-                                0.75,
-                                select(
-                                    start_number == 4,
-                                    0.25,
-                                    select(start_number == 3, 1.0, select(start_number == 2, 0.0, 0.5)),
-                                ),
-                            ),
-                        ),
-                    ),
-                ),
-            )
-            start_of_steps = low + part_width * value_in_start_of_steps
-            return (start_of_steps,)
-
-        sum_in_start_of_steps = (
-            shortest_place
-            + (
-                select(start_number == 11, 1.0, select(start_number == 12, -1.0, 0.0))
-                + select(start_number == 14, 1.0, select(start_number == 15, -1.0, 0.0))
-            )
-            * aside
-        )
-        start_of_steps = select(
-            sum_in_start_of_steps < low, low, select(sum_in_start_of_steps > high, high, sum_in_start_of_steps)
-        )
-        (start_of_steps,) = elsewhere(
-            is_at_length, (start_of_steps,), elsewhere_start_of_steps, (low, part_width, start_number)
-        )
-        # Newton's method on the residual of the branch
-        place, best_place, least, way, share, steps = initial(start_of_steps, start_of_steps, 1e30, 0.0, 1.0, 0)
-        for _ in range(25):
-            found = self.try_joint(
-                (
-                    goal_r11,
-                    goal_r12,
-                    goal_r13,
-                    goal_r21,
-                    goal_r22,
-                    goal_r23,
-                    goal_r31,
-                    goal_r32,
-                    goal_r33,
-                    goal_x,
-                    goal_y,
-                    goal_z,
-                    reference_a1,
-                    reference_a2,
-                    side,
-                    place,
-                    wanted_elbow,
-                    wanted_shoulder,
-                ),
-                status,
-            )
-            remainder, slope, *_ = found
-            size = absolute(remainder)
-            is_less = size < least
-            best_now = select(is_less, place, best_place)
-            way_now = select(is_less, remainder / select(absolute(slope) > 0.0, slope, 1e30), way)
-            share_now = select(is_less, 1.0, 0.25 * share)
-            best_now_minus_share_now_times_way_now = best_now - share_now * way_now
-            next_place = select(
-                best_now_minus_share_now_times_way_now < low,
-                low,
-                select(best_now_minus_share_now_times_way_now > high, high, best_now_minus_share_now_times_way_now),
-            )
-            least_now = select(is_less, size, least)
-            done = (part_width <= 1e-9) | (steps >= 24) | (absolute(next_place - place) <= 0.0)
-            if settled(done, status):
-                break
-            place, best_place, least, way, share, steps = advanced(
-                done,
-                (place, best_place, least, way, share, steps),
-                (next_place, best_now, least_now, way_now, share_now, 1 + steps),
-            )
-        return (best_now, least_now)
 
     def joints_at(self, given: Values, status: Codes) -> Values:
         """The joints with the searched one known."""
@@ -1259,15 +1068,9 @@ class ArrayPrograms(Programs):
             atan2(sin_q6_tried, cos_q6_tried),
         )
 
-    def finish_root(self, given: Values, status: Codes) -> Values:
-        """The joints that meet the pose, and whether they are on the branch."""
+    def step_on_closure(self, given: Values, status: Codes) -> Values:
+        """A step of all joints towards the pose, and the error before it."""
         (
-            begun_q1,
-            begun_q2,
-            begun_q3,
-            begun_q4,
-            begun_q5,
-            begun_q6,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -1280,316 +1083,356 @@ class ArrayPrograms(Programs):
             goal_x,
             goal_y,
             goal_z,
-            wanted_crossing,
-            wanted_elbow,
-            wanted_shoulder,
-            wanted_wrist,
+            q1,
+            q2,
+            q3,
+            q4,
+            q5,
+            q6,
         ) = given
         k = self.constants
-        # steps of damped least squares on the closure
-        q1, q2, q3, q4, q5, q6, error_before, passes_left = initial(
-            begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, 9.0, 64
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = k.a1 * cos_q1
+        sin_q2 = sin(q2)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        error_1 = (goal_x - x) * k.one_by_machine_scale
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = k.a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        error_2 = (goal_y - y) * k.one_by_machine_scale
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        error_3 = (goal_z - z) * k.one_by_machine_scale
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        sin_q6 = sin(q6)
+        cos_q6 = cos(q6)
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r32_at_q4 = cos_q23 * sin_q4
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+        error_4 = 0.5 * (
+            goal_r31 * r21_at_q6
+            + goal_r32 * r22_at_q6
+            + goal_r33 * r23_at_q5
+            - goal_r21 * r31_at_q6
+            - goal_r22 * r32_at_q6
+            - goal_r23 * r33_at_q5
         )
-        for _ in range(65):
-            cos_q1 = cos(q1)
-            q2_plus_q3 = q2 + q3
-            cos_q23 = cos(q2_plus_q3)
-            r11_at_q23 = cos_q1 * cos_q23
-            sin_q1 = sin(q1)
-            sin_q23 = sin(q2_plus_q3)
-            r13_at_q23 = cos_q1 * sin_q23
-            sin_q4 = sin(q4)
-            cos_q4 = cos(q4)
-            r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-            sin_q5 = sin(q5)
-            cos_q5 = cos(q5)
-            r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-            x_at_q2 = k.a1 * cos_q1
-            sin_q2 = sin(q2)
-            r13_at_q2 = cos_q1 * sin_q2
-            x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-            x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
-            x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
-            r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-            x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
-            x = x_at_q6 + k.d6 * r13_at_q5
-            error_1 = (goal_x - x) * k.one_by_machine_scale
-            r21_at_q23 = cos_q23 * sin_q1
-            r23_at_q23 = sin_q1 * sin_q23
-            r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-            r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-            y_at_q2 = k.a1 * sin_q1
-            r23_at_q2 = sin_q1 * sin_q2
-            y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-            y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
-            y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
-            r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-            y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
-            y = y_at_q6 + k.d6 * r23_at_q5
-            error_2 = (goal_y - y) * k.one_by_machine_scale
-            r33_at_q4 = cos_q23 * cos_q4
-            r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-            cos_q2 = cos(q2)
-            z_at_q3 = k.d1 + k.a2 * cos_q2
-            z_at_q4 = z_at_q3 + k.a3 * cos_q23
-            z_at_q5 = z_at_q4 - k.d4 * sin_q23
-            r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-            z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
-            z = z_at_q6 + k.d6 * r33_at_q5
-            error_3 = (goal_z - z) * k.one_by_machine_scale
-            r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-            sin_q6 = sin(q6)
-            cos_q6 = cos(q6)
-            r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-            r32_at_q4 = cos_q23 * sin_q4
-            r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-            r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-            r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-            error_4 = 0.5 * (
-                goal_r31 * r21_at_q6
-                + goal_r32 * r22_at_q6
-                + goal_r33 * r23_at_q5
-                - goal_r21 * r31_at_q6
-                - goal_r22 * r32_at_q6
-                - goal_r23 * r33_at_q5
-            )
-            r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-            r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-            r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-            error_5 = 0.5 * (
-                goal_r11 * r31_at_q6
-                + goal_r12 * r32_at_q6
-                + goal_r13 * r33_at_q5
-                - goal_r31 * r11_at_q6
-                - goal_r32 * r12_at_q6
-                - goal_r33 * r13_at_q5
-            )
-            error_6 = 0.5 * (
-                goal_r21 * r11_at_q6
-                + goal_r22 * r12_at_q6
-                + goal_r23 * r13_at_q5
-                - goal_r11 * r21_at_q6
-                - goal_r12 * r22_at_q6
-                - goal_r13 * r23_at_q5
-            )
-            # 3 where the rotations agree, -1 where they are half a turn apart
-            agreement = (
-                goal_r11 * r11_at_q6
-                + goal_r12 * r12_at_q6
-                + goal_r13 * r13_at_q5
-                + goal_r21 * r21_at_q6
-                + goal_r22 * r22_at_q6
-                + goal_r23 * r23_at_q5
-                + goal_r31 * r31_at_q6
-                + goal_r32 * r32_at_q6
-                + goal_r33 * r33_at_q5
-            )
-            # pose error, in characteristic lengths and radians
-            error = root(
-                select(agreement > 1.0, 0.0, 1.0)
-                + error_1 * error_1
-                + error_2 * error_2
-                + error_3 * error_3
-                + error_4 * error_4
-                + error_5 * error_5
-                + error_6 * error_6
-            )
-            rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
-            z_minus_d1 = z - k.d1
-            cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
-            rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-            z_minus_z_at_q3 = z - z_at_q3
-            rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            z_minus_z_at_q4 = z - z_at_q4
-            y_minus_y_at_q4 = y - y_at_q4
-            rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-            z_minus_z_at_q5 = z - z_at_q5
-            y_minus_y_at_q5 = y - y_at_q5
-            rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-            z_minus_z_at_q6 = z - z_at_q6
-            y_minus_y_at_q6 = y - y_at_q6
-            rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
-                + rate_1_2 * rate_1_2
-                + rate_1_3 * rate_1_3
-                + rate_1_4 * rate_1_4
-                + rate_1_5 * rate_1_5
-                + rate_1_6 * rate_1_6
-            )
-            sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
-            rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-            rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            x_minus_x_at_q4 = x - x_at_q4
-            rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-            x_minus_x_at_q5 = x - x_at_q5
-            rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
-            x_minus_x_at_q6 = x - x_at_q6
-            rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
-            product_1_2 = (
-                rate_1_1 * rate_2_1
-                + rate_1_2 * rate_2_2
-                + rate_1_3 * rate_2_3
-                + rate_1_4 * rate_2_4
-                + rate_1_5 * rate_2_5
-                + rate_1_6 * rate_2_6
-            )
-            rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-            rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-            rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-            product_1_3 = (
-                rate_1_2 * rate_3_2
-                + rate_1_3 * rate_3_3
-                + rate_1_4 * rate_3_4
-                + rate_1_5 * rate_3_5
-                + rate_1_6 * rate_3_6
-            )
-            rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-            product_1_4 = (
-                r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
-            )
-            product_1_5 = (
-                rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
-            )
-            product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
-            product_2_3 = (
-                rate_2_2 * rate_3_2
-                + rate_2_3 * rate_3_3
-                + rate_2_4 * rate_3_4
-                + rate_2_5 * rate_3_5
-                + rate_2_6 * rate_3_6
-            )
-            rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-            product_2_4 = (
-                r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
-            )
-            product_2_5 = (
-                rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
-            )
-            product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
-            rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-            product_3_4 = (
-                r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
-            )
-            product_3_5 = (
-                rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
-            )
-            product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
-            product_4_4 = (
-                damping
-                + r11_at_q23 * r11_at_q23
-                + r12_at_q4 * r12_at_q4
-                + r13_at_q5 * r13_at_q5
-                + 2.0 * sin_q1 * sin_q1
-            )
-            product_4_5 = (
-                r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
-            )
-            product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
-            product_5_5 = (
-                damping
-                + 2.0 * cos_q1 * cos_q1
-                + r21_at_q23 * r21_at_q23
-                + r22_at_q4 * r22_at_q4
-                + r23_at_q5 * r23_at_q5
-            )
-            product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
-            product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-            # damped least squares: the shortest step that cancels the error
-            _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
-                (
-                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
-                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
-                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
-                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
-                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
-                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
-                ),
-                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
-            )
-            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-            step_q4 = (
-                multiplier_1 * rate_1_4
-                + multiplier_2 * rate_2_4
-                + multiplier_3 * rate_3_4
-                + multiplier_4 * r11_at_q23
-                + multiplier_5 * r21_at_q23
-                - multiplier_6 * sin_q23
-            )
-            step_q5 = (
-                multiplier_1 * rate_1_5
-                + multiplier_2 * rate_2_5
-                + multiplier_3 * rate_3_5
-                + multiplier_4 * r12_at_q4
-                + multiplier_5 * r22_at_q4
-                + multiplier_6 * r32_at_q4
-            )
-            step_q6 = (
-                multiplier_1 * rate_1_6
-                + multiplier_2 * rate_2_6
-                + multiplier_3 * rate_3_6
-                + multiplier_4 * r13_at_q5
-                + multiplier_5 * r23_at_q5
-                + multiplier_6 * r33_at_q5
-            )
-            step_length = sqrt(
-                step_q1 * step_q1
-                + step_q2 * step_q2
-                + step_q3 * step_q3
-                + step_q4 * step_q4
-                + step_q5 * step_q5
-                + step_q6 * step_q6
-            )
-            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-            cost = select(error > 0.999 * error_before, 8, 1)
-            meets_pose = error <= 1e-11
-            done = (
-                (error <= 1e-14)
-                | (passes_left <= 0)
-                | (meets_pose & ((passes_left <= 0) | (2.0 * error > error_before)))
-            )
-            if settled(done, status):
-                break
-            q1, q2, q3, q4, q5, q6, error_before, passes_left = advanced(
-                done,
-                (q1, q2, q3, q4, q5, q6, error_before, passes_left),
-                (
-                    q1 + shrinking * step_q1,
-                    q2 + shrinking * step_q2,
-                    q3 + shrinking * step_q3,
-                    q4 + shrinking * step_q4,
-                    q5 + shrinking * step_q5,
-                    q6 + shrinking * step_q6,
-                    error,
-                    passes_left - cost,
-                ),
-            )
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        error_5 = 0.5 * (
+            goal_r11 * r31_at_q6
+            + goal_r12 * r32_at_q6
+            + goal_r13 * r33_at_q5
+            - goal_r31 * r11_at_q6
+            - goal_r32 * r12_at_q6
+            - goal_r33 * r13_at_q5
+        )
+        error_6 = 0.5 * (
+            goal_r21 * r11_at_q6
+            + goal_r22 * r12_at_q6
+            + goal_r23 * r13_at_q5
+            - goal_r11 * r21_at_q6
+            - goal_r12 * r22_at_q6
+            - goal_r13 * r23_at_q5
+        )
+        rate_1_1 = -k.one_by_machine_scale * y
+        z_minus_d1 = z - k.d1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        # 3 where the rotations agree, -1 where they are half a turn apart
+        agreement = (
+            goal_r11 * r11_at_q6
+            + goal_r12 * r12_at_q6
+            + goal_r13 * r13_at_q5
+            + goal_r21 * r21_at_q6
+            + goal_r22 * r22_at_q6
+            + goal_r23 * r23_at_q5
+            + goal_r31 * r31_at_q6
+            + goal_r32 * r32_at_q6
+            + goal_r33 * r33_at_q5
+        )
+        # pose error, in characteristic lengths and radians
+        error = root(
+            select(agreement > 1.0, 0.0, 1.0)
+            + error_1 * error_1
+            + error_2 * error_2
+            + error_3 * error_3
+            + error_4 * error_4
+            + error_5 * error_5
+            + error_6 * error_6
+        )
+        product_in_damping = 0.001 * error
+        damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+        product_1_1 = (
+            damping
+            + rate_1_1 * rate_1_1
+            + rate_1_2 * rate_1_2
+            + rate_1_3 * rate_1_3
+            + rate_1_4 * rate_1_4
+            + rate_1_5 * rate_1_5
+            + rate_1_6 * rate_1_6
+        )
+        rate_2_1 = k.one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
+        product_1_2 = (
+            rate_1_1 * rate_2_1
+            + rate_1_2 * rate_2_2
+            + rate_1_3 * rate_2_3
+            + rate_1_4 * rate_2_4
+            + rate_1_5 * rate_2_5
+            + rate_1_6 * rate_2_6
+        )
+        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        product_1_3 = (
+            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
+        )
+        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+        product_1_4 = (
+            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+        )
+        product_1_5 = (
+            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+        )
+        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
+        product_2_2 = (
+            damping
+            + rate_2_1 * rate_2_1
+            + rate_2_2 * rate_2_2
+            + rate_2_3 * rate_2_3
+            + rate_2_4 * rate_2_4
+            + rate_2_5 * rate_2_5
+            + rate_2_6 * rate_2_6
+        )
+        product_2_3 = (
+            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
+        )
+        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+        product_2_4 = (
+            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+        )
+        product_2_5 = (
+            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+        )
+        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
+        product_3_3 = (
+            damping
+            + rate_3_2 * rate_3_2
+            + rate_3_3 * rate_3_3
+            + rate_3_4 * rate_3_4
+            + rate_3_5 * rate_3_5
+            + rate_3_6 * rate_3_6
+        )
+        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+        product_3_4 = (
+            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+        )
+        product_3_5 = (
+            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+        )
+        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+        product_4_4 = (
+            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+        )
+        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+        product_5_5 = (
+            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+        )
+        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
+        # damped least squares: the shortest step that cancels the error
+        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+            (
+                (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+            ),
+            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+        )
+        step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+        sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+        step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+        step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+        step_q4 = (
+            multiplier_1 * rate_1_4
+            + multiplier_2 * rate_2_4
+            + multiplier_3 * rate_3_4
+            + multiplier_4 * r11_at_q23
+            + multiplier_5 * r21_at_q23
+            - multiplier_6 * sin_q23
+        )
+        step_q5 = (
+            multiplier_1 * rate_1_5
+            + multiplier_2 * rate_2_5
+            + multiplier_3 * rate_3_5
+            + multiplier_4 * r12_at_q4
+            + multiplier_5 * r22_at_q4
+            + multiplier_6 * r32_at_q4
+        )
+        step_q6 = (
+            multiplier_1 * rate_1_6
+            + multiplier_2 * rate_2_6
+            + multiplier_3 * rate_3_6
+            + multiplier_4 * r13_at_q5
+            + multiplier_5 * r23_at_q5
+            + multiplier_6 * r33_at_q5
+        )
+        step_length = sqrt(
+            step_q1 * step_q1
+            + step_q2 * step_q2
+            + step_q3 * step_q3
+            + step_q4 * step_q4
+            + step_q5 * step_q5
+            + step_q6 * step_q6
+        )
+        shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+        return (
+            error,
+            q1 + shrinking * step_q1,
+            q2 + shrinking * step_q2,
+            q3 + shrinking * step_q3,
+            q4 + shrinking * step_q4,
+            q5 + shrinking * step_q5,
+            q6 + shrinking * step_q6,
+        )
+
+    def is_on_branch(self, given: Values, status: Codes) -> Values:
+        """Whether joints are on the wanted branch."""
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist, x, y, z = given
+        k = self.constants
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        rate_1_1 = -k.one_by_machine_scale * y
+        z_minus_d1 = z - k.d1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_minus_z_at_q4 = z - z_at_q4
+        y_at_q2 = k.a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        z_minus_z_at_q5 = z - z_at_q5
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        sum_in_rate_1_6 = y_minus_y_at_q5 - k.j6_offset_x * r21_at_q5
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        sum_in_rate_1_6_2 = z_minus_z_at_q5 - k.j6_offset_x * r31_at_q5
+        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * sum_in_rate_1_6_2 - r33_at_q5 * sum_in_rate_1_6)
+        rate_2_1 = k.one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        sum_in_rate_2_6 = x_minus_x_at_q5 - k.j6_offset_x * r11_at_q5
+        rate_2_6 = (r33_at_q5 * sum_in_rate_2_6 - r13_at_q5 * sum_in_rate_1_6_2) * k.one_by_machine_scale
+        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * sum_in_rate_1_6 - r23_at_q5 * sum_in_rate_2_6)
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
@@ -1603,8 +1446,7 @@ class ArrayPrograms(Programs):
             (),
         )
         fits = (
-            meets_pose
-            & (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
+            (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
             & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
             & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
             & (
@@ -1612,11 +1454,12 @@ class ArrayPrograms(Programs):
                 >= -1e-6
             )
         )
-        return (fits, meets_pose, q1, q2, q3, q4, q5, q6)
+        return (fits,)
 
     def find_root(self, given: Values, status: Codes) -> Values:
-        """The joints at the root nearest to the start, or next ahead of it; zeros where there is none."""
+        """The joints at the root nearest to the start, or next ahead of it."""
         (
+            bound_of_fifth,
             goal_r11,
             goal_r12,
             goal_r13,
@@ -1630,6 +1473,7 @@ class ArrayPrograms(Programs):
             goal_y,
             goal_z,
             looked_for,
+            noise,
             onward,
             reference_a1,
             reference_a2,
@@ -1638,28 +1482,6 @@ class ArrayPrograms(Programs):
             wanted_elbow,
             wanted_shoulder,
             wanted_wrist,
-        ) = given
-        found = run_where(
-            looked_for,
-            self.compute_wave,
-            (
-                goal_r11,
-                goal_r12,
-                goal_r13,
-                goal_r21,
-                goal_r22,
-                goal_r23,
-                goal_r31,
-                goal_r32,
-                goal_r33,
-                goal_x,
-                goal_y,
-                goal_z,
-            ),
-            status,
-            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        )
-        (
             wave_cos_0,
             wave_cos_1,
             wave_cos_2,
@@ -1677,46 +1499,104 @@ class ArrayPrograms(Programs):
             wave_sin_6,
             wave_sin_7,
             wave_sin_8,
-            noise,
-        ) = found
-        begin = select(onward, 1e-7 + start, 0.1)
-        end_of_circle = begin + select(onward, 360.0 * DEGREE - 2e-7, 360.0 * DEGREE)
-        # the parts of the circle, and their starts
+            _,
+            _,
+            _,
+        ) = given
+        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        # one step of the search
         (
+            stage,
+            direction,
             place,
-            low_before,
-            high_before,
-            start_before,
-            side_before,
-            steps_before,
-            starts_left,
+            width,
+            side,
+            number_of_start,
+            shortest,
+            aside,
+            error_before,
+            steps_left,
+            was_mirrored,
             nearest,
-            mirrored,
+            passes_left,
+            at,
+            trials,
+            best,
+            least,
+            way,
+            last,
+            growth_before,
+            bend,
+            q1,
+            met_from_q1,
             kept_q1,
+            q2,
+            met_from_q2,
             kept_q2,
+            q3,
+            met_from_q3,
             kept_q3,
+            q4,
+            met_from_q4,
             kept_q4,
+            q5,
+            met_from_q5,
             kept_q5,
+            q6,
+            met_from_q6,
             kept_q6,
-            mirror_q1,
-            mirror_q2,
-            mirror_q3,
-            mirror_q4,
-            mirror_q5,
-            mirror_q6,
         ) = initial(
-            begin, begin, begin, 0, 1, 1000, 320, 9.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            0,
+            1,
+            select(onward, 1e-7, 0.0),
+            0.0,
+            1,
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0,
+            False,
+            9.0,
+            2000,
+            0.0,
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
-        for _ in range(640):
-            is_between = start_before == 0
+        for _ in range(2001):
+            place_plus_width = place + width
             found = run_where(
-                is_between & (place < end_of_circle),
-                self.find_part,
+                stage == 0,
+                self.look_at_wave,
                 (
-                    place,
-                    end_of_circle,
+                    place_plus_width,
+                    bound_of_fifth,
+                    direction,
                     noise,
-                    steps_before,
+                    start,
                     wave_cos_0,
                     wave_cos_1,
                     wave_cos_2,
@@ -1736,17 +1616,13 @@ class ArrayPrograms(Programs):
                     wave_sin_8,
                 ),
                 status,
-                (0.0, 0.0, False, 0.0),
+                (False, 0.0),
             )
-            low, high, is_part, steps_still_left = found
-            low_now = select(is_between, low, low_before)
-            high_now = select(is_between, high, high_before)
-            number_now = select(is_between, 1, start_before)
-            has_part = is_part | (opposite(is_between))
-            is_new = has_part & (mirrored == 0)
+            is_rounding, safe_step = found
+            real_of_direction = direction
             found = run_where(
-                is_new,
-                self.settle_joint,
+                (stage == 1) | (stage == 2),
+                self.try_joint,
                 (
                     goal_r11,
                     goal_r12,
@@ -1760,20 +1636,32 @@ class ArrayPrograms(Programs):
                     goal_x,
                     goal_y,
                     goal_z,
-                    high_now,
-                    low_now,
                     reference_a1,
                     reference_a2,
-                    side_before,
-                    number_now,
+                    side,
+                    start + at * real_of_direction,
                     wanted_elbow,
                     wanted_shoulder,
                 ),
                 status,
-                (0.0, 0.0),
+                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
-            settled_, remains = found
-            is_near = is_new & (remains <= 0.001)
+            remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = found
+            size = select(stage == 1, select(number_of_start > 12, length_2, length_1), absolute(remainder))
+            is_less = size < least
+            best_now = select(is_less, at, best)
+            least_now = select(is_less, size, least)
+            way_now = select(
+                is_less, real_of_direction * remainder / select(absolute(rate) > 0.0, rate, 1e30), 0.25 * way
+            )
+            best_now_minus_way_now = best_now - way_now
+            newton_place = select(
+                best_now_minus_way_now < place,
+                place,
+                select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
+            )
+            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 24) | (absolute(at - newton_place) <= 0.0))
+            is_near = is_settled & (least_now <= 0.001) & ((room_of_trial <= 1e-6) | (width > 1e-9) | (side > 0))
             found = run_where(
                 is_near,
                 self.joints_at,
@@ -1792,8 +1680,8 @@ class ArrayPrograms(Programs):
                     goal_z,
                     reference_a1,
                     reference_a2,
-                    side_before,
-                    settled_,
+                    side,
+                    start + best_now * real_of_direction,
                     wanted_elbow,
                     wanted_shoulder,
                 ),
@@ -1801,23 +1689,10 @@ class ArrayPrograms(Programs):
                 (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
             begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
-            is_tried = has_part & (is_near | (opposite(is_new)))
-            start_q1 = select(is_new, begun_q1, mirror_q1)
-            start_q2 = select(is_new, begun_q2, mirror_q2)
-            start_q3 = select(is_new, begun_q3, mirror_q3)
-            start_q4 = select(is_new, begun_q4, mirror_q4)
-            start_q5 = select(is_new, begun_q5, mirror_q5)
-            start_q6 = select(is_new, begun_q6, mirror_q6)
             found = run_where(
-                is_tried,
-                self.finish_root,
+                stage == 3,
+                self.step_on_closure,
                 (
-                    start_q1,
-                    start_q2,
-                    start_q3,
-                    start_q4,
-                    start_q5,
-                    start_q6,
                     goal_r11,
                     goal_r12,
                     goal_r13,
@@ -1830,140 +1705,370 @@ class ArrayPrograms(Programs):
                     goal_x,
                     goal_y,
                     goal_z,
-                    wanted_crossing,
-                    wanted_elbow,
-                    wanted_shoulder,
-                    wanted_wrist,
+                    q1,
+                    q2,
+                    q3,
+                    q4,
+                    q5,
+                    q6,
                 ),
                 status,
-                (False, False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
-            fits, meets_pose, joint_q1, joint_q2, joint_q3, joint_q4, joint_q5, joint_q6 = found
-            mirrors = is_near & meets_pose & (opposite(fits))
-            high_now_minus_low_now = high_now - low_now
-            number_now_plus_one = 1 + number_now
-            value_in_next_start = select(
-                number_now
-                < select(
-                    high_now_minus_low_now <= 1e-9,
-                    1,
-                    select(high_now_minus_low_now <= 0.0001, 3, select(high_now_minus_low_now <= 0.01, 5, 9)),
-                ),
-                number_now_plus_one,
-                select(
-                    number_now <= 9,
-                    select(high_now_minus_low_now > 1e-6, 10, 0),
-                    select(number_now < 15, number_now_plus_one, 0),
-                ),
+            error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
+            steps_end = (stage == 3) & (
+                (error <= 1e-14)
+                | (steps_left <= 0)
+                | ((error <= 1e-11) & ((steps_left <= 0) | (2.0 * error > error_before)))
             )
-            next_start = select(mirrors | (side_before >= 0), number_now, value_in_next_start)
-            goes_on = has_part & (next_start > 0)
-            next_side = select(mirrors, side_before, -side_before)
-            steps_now = select(is_between, steps_still_left, steps_before)
-            start_minus_joint_q6 = start - joint_q6
+            meets_pose = steps_end & (error <= 1e-11)
+            found = run_where(
+                meets_pose,
+                self.is_on_branch,
+                (q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist),
+                status,
+                (False,),
+            )
+            (fits,) = found
+            way_ends = (
+                (stage == 0)
+                & (width <= 0.0)
+                & (
+                    place
+                    >= select(onward, sum_in_way_ends, select(nearest < 180.0 * DEGREE, 2e-7 + nearest, 180.0 * DEGREE))
+                )
+            )
+            start_minus_q6 = start - q6
             distance = select(
                 onward,
                 1e-7
                 + 180.0 * DEGREE
-                + atan2(
-                    -sin(1e-7 + 180.0 * DEGREE + start_minus_joint_q6),
-                    cos(1e-7 + 180.0 * DEGREE + start_minus_joint_q6),
-                ),
-                absolute(atan2(-sin(1e-7 + start_minus_joint_q6), cos(1e-7 + start_minus_joint_q6))),
+                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
+                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
             )
             is_better = (
                 fits
+                & meets_pose
                 & (distance < nearest)
-                & ((opposite(onward)) | ((distance > 1e-7) & (distance < 360.0 * DEGREE - 1e-7)))
+                & ((opposite(onward)) | ((distance > 1e-7) & (distance < sum_in_way_ends)))
             )
-            mirror_now_q1 = 2.0 * start_q1 - joint_q1
-            mirror_now_q2 = 2.0 * start_q2 - joint_q2
-            mirror_now_q3 = 2.0 * start_q3 - joint_q3
-            mirror_now_q4 = 2.0 * start_q4 - joint_q4
-            mirror_now_q5 = 2.0 * start_q5 - joint_q5
-            mirror_now_q6 = 2.0 * start_q6 - joint_q6
-            done = (
-                (opposite(looked_for))
-                | (place >= end_of_circle)
-                | (starts_left <= 0)
-                | (is_between & onward & (nearest < 9.0))
+            nearest_now = select(is_better, distance, nearest)
+            is_shortest = (stage == 1) & (trials >= 21)
+            moved = (
+                absolute(met_from_q1 - q1)
+                + absolute(met_from_q2 - q2)
+                + absolute(met_from_q3 - q3)
+                + absolute(met_from_q4 - q4)
+                + absolute(met_from_q5 - q5)
+                + absolute(met_from_q6 - q6)
             )
+            mirrors = meets_pose & (opposite(fits)) & (opposite(was_mirrored)) & (moved > 1e-8)
+            part_ends = (stage == 0) & (width > 0.0) & ((opposite(is_rounding)) | (width >= 0.5))
+            start_ends = (is_settled & (opposite(is_near))) | (steps_end & (opposite(mirrors)))
+            number_of_start_plus_one = 1 + number_of_start
+            next_number = select(
+                number_of_start < select(width <= 1e-9, 1, select(width <= 0.0001, 3, select(width <= 0.01, 5, 9))),
+                number_of_start_plus_one,
+                select(
+                    number_of_start <= 9,
+                    select(width > 1e-6, 10, 0),
+                    select(number_of_start < 15, number_of_start_plus_one, 0),
+                ),
+            )
+            part_is_done = start_ends & (next_number == 0) & (side <= 0)
+            begins = (opposite(part_is_done)) & (part_ends | start_ends)
+            side_ends = start_ends & (next_number == 0) & (side > 0)
+            is_first = part_ends | side_ends
+            number_now = select(is_first, 1, select(start_ends, next_number, number_of_start))
+            seeks_length = begins & ((number_now == 10) | (number_now == 13))
+            next_stage = select(
+                is_near | mirrors | ((opposite(steps_end)) & (stage == 3)),
+                3,
+                select(
+                    seeks_length | ((opposite(is_shortest)) & (stage == 1)),
+                    1,
+                    select(
+                        is_shortest | (begins & (opposite(seeks_length))) | ((opposite(is_settled)) & (stage == 2)),
+                        2,
+                        0,
+                    ),
+                ),
+            )
+            turns_back = way_ends & (opposite(onward)) & (direction > 0)
+            is_over = (
+                (passes_left <= 0)
+                | (way_ends & (opposite(turns_back)))
+                | (onward & (next_stage == 0) & (nearest_now < 9.0))
+            )
+            direction_next = select(turns_back, -1, direction)
+            place_next = select(
+                turns_back,
+                0.0,
+                select(
+                    part_is_done,
+                    place_plus_width,
+                    select((opposite(is_rounding)) & (stage == 0) & (width <= 0.0), place + safe_step, place),
+                ),
+            )
+            width_next = select(
+                turns_back,
+                0.0,
+                select(
+                    part_is_done,
+                    0.0,
+                    select(
+                        (opposite(part_ends)) & (stage == 0),
+                        select(width > 0.0, 2.0 * width, select(is_rounding, 1e-13, 0.0)),
+                        width,
+                    ),
+                ),
+            )
+            side_next = select(part_ends, 1, select(side_ends, -1, side))
+            shortest_now = select(is_shortest, best_now, shortest)
+            growth = select(number_of_start > 12, growth_2, growth_1) * real_of_direction
+            gap = growth - growth_before
+            way_of_trial = at - last
+            bend_now = select(
+                (trials > 9) & (gap * way_of_trial > 0.0),
+                gap / select((trials > 9) & (gap * way_of_trial > 0.0), way_of_trial, 1.0),
+                bend,
+            )
+            bend_now_2 = select(bend_now > 0.0, bend_now, 1.0)
+            aside_now = select(is_shortest, select(bend_now > 0.0, 1.7 * least_now / root(bend_now_2), 0.0), aside)
+            error_before_next = select(is_near | mirrors, 9.0, error)
+            steps_left_next = select(is_near | mirrors, 64, steps_left + select(error > 0.999 * error_before, -8, -1))
+            was_mirrored_next = (opposite(is_near)) & (mirrors | was_mirrored)
+            passes_left_next = passes_left - 1
+            spread = 0.125 * width
+            spread_times_1_by_4 = 0.25 * spread
+            best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4
+            at_minus_growth_by_bend_now = at - growth / bend_now_2
+            value_in_shortening_place = select(
+                trials < 9,
+                best_now,
+                select(
+                    trials == 9,
+                    select(
+                        best_now_plus_spread_times_1_by_4 > place_plus_width,
+                        best_now - spread_times_1_by_4,
+                        best_now_plus_spread_times_1_by_4,
+                    ),
+                    select(
+                        at_minus_growth_by_bend_now < place,
+                        place,
+                        select(
+                            at_minus_growth_by_bend_now > place_plus_width,
+                            place_plus_width,
+                            at_minus_growth_by_bend_now,
+                        ),
+                    ),
+                ),
+            )
+            shortening_place = select(trials < 8, place + (1.0 + trials) * spread, value_in_shortening_place)
+            value_in_place_of_start = select(
+                (number_now == 11) | (number_now == 14),
+                aside_now + shortest_now,
+                select((number_now == 12) | (number_now == 15), shortest_now - aside_now, shortest_now),
+            )
+            sum_in_place_of_start = (
+                place
+                + select(
+                    number_now == 9,
+                    0.875,
+                    select(
+                        number_now == 8,
+                        0.625,
+                        select(
+                            number_now == 7,
+                            0.375,
+                            select(
+                                number_now == 6,
+                                0.125,
+                                select(
+                                    number_now == 5,
+                                    0.75,
+                                    select(
+                                        number_now == 4,
+                                        0.25,
+                                        select(number_now == 3, 1.0, select(number_now == 2, 0.0, 0.5)),
+                                    ),
+                                ),
+                            ),
+                        ),
+                    ),
+                )
+                * width
+            )
+            place_of_start = select(
+                seeks_length,
+                place,
+                select(
+                    number_now > 9,
+                    select(
+                        value_in_place_of_start < place,
+                        place,
+                        select(value_in_place_of_start > place_plus_width, place_plus_width, value_in_place_of_start),
+                    ),
+                    sum_in_place_of_start,
+                ),
+            )
+            at_next = select(begins | is_shortest, place_of_start, select(stage == 1, shortening_place, newton_place))
+            trials_next = select(begins | is_shortest, 0, 1 + trials)
+            best_next = select(begins | is_shortest, place_of_start, best_now)
+            least_next = select(begins | is_shortest, 1e30, least_now)
+            way_next = select(begins | is_shortest, 0.0, way_now)
+            last_next = select(begins | is_shortest, place_of_start, at)
+            growth_before_next = select(begins | is_shortest, 0.0, growth)
+            bend_next = select(begins | is_shortest, 0.0, bend_now)
+            q1_next = select(is_near, begun_q1, select(mirrors, 2.0 * met_from_q1 - q1, moved_q1))
+            met_from_q1_next = select(is_near, begun_q1, met_from_q1)
+            kept_q1_next = select(is_better, q1, kept_q1)
+            q2_next = select(is_near, begun_q2, select(mirrors, 2.0 * met_from_q2 - q2, moved_q2))
+            met_from_q2_next = select(is_near, begun_q2, met_from_q2)
+            kept_q2_next = select(is_better, q2, kept_q2)
+            q3_next = select(is_near, begun_q3, select(mirrors, 2.0 * met_from_q3 - q3, moved_q3))
+            met_from_q3_next = select(is_near, begun_q3, met_from_q3)
+            kept_q3_next = select(is_better, q3, kept_q3)
+            q4_next = select(is_near, begun_q4, select(mirrors, 2.0 * met_from_q4 - q4, moved_q4))
+            met_from_q4_next = select(is_near, begun_q4, met_from_q4)
+            kept_q4_next = select(is_better, q4, kept_q4)
+            q5_next = select(is_near, begun_q5, select(mirrors, 2.0 * met_from_q5 - q5, moved_q5))
+            met_from_q5_next = select(is_near, begun_q5, met_from_q5)
+            kept_q5_next = select(is_better, q5, kept_q5)
+            q6_next = select(is_near, begun_q6, select(mirrors, 2.0 * met_from_q6 - q6, moved_q6))
+            met_from_q6_next = select(is_near, begun_q6, met_from_q6)
+            kept_q6_next = select(is_better, q6, kept_q6)
+            done = is_over | (opposite(looked_for))
             if settled(done, status):
                 break
             (
+                stage,
+                direction,
                 place,
-                low_before,
-                high_before,
-                start_before,
-                side_before,
-                steps_before,
-                starts_left,
+                width,
+                side,
+                number_of_start,
+                shortest,
+                aside,
+                error_before,
+                steps_left,
+                was_mirrored,
                 nearest,
-                mirrored,
+                passes_left,
+                at,
+                trials,
+                best,
+                least,
+                way,
+                last,
+                growth_before,
+                bend,
+                q1,
+                met_from_q1,
                 kept_q1,
+                q2,
+                met_from_q2,
                 kept_q2,
+                q3,
+                met_from_q3,
                 kept_q3,
+                q4,
+                met_from_q4,
                 kept_q4,
+                q5,
+                met_from_q5,
                 kept_q5,
+                q6,
+                met_from_q6,
                 kept_q6,
-                mirror_q1,
-                mirror_q2,
-                mirror_q3,
-                mirror_q4,
-                mirror_q5,
-                mirror_q6,
             ) = advanced(
                 done,
                 (
+                    stage,
+                    direction,
                     place,
-                    low_before,
-                    high_before,
-                    start_before,
-                    side_before,
-                    steps_before,
-                    starts_left,
+                    width,
+                    side,
+                    number_of_start,
+                    shortest,
+                    aside,
+                    error_before,
+                    steps_left,
+                    was_mirrored,
                     nearest,
-                    mirrored,
+                    passes_left,
+                    at,
+                    trials,
+                    best,
+                    least,
+                    way,
+                    last,
+                    growth_before,
+                    bend,
+                    q1,
+                    met_from_q1,
                     kept_q1,
+                    q2,
+                    met_from_q2,
                     kept_q2,
+                    q3,
+                    met_from_q3,
                     kept_q3,
+                    q4,
+                    met_from_q4,
                     kept_q4,
+                    q5,
+                    met_from_q5,
                     kept_q5,
+                    q6,
+                    met_from_q6,
                     kept_q6,
-                    mirror_q1,
-                    mirror_q2,
-                    mirror_q3,
-                    mirror_q4,
-                    mirror_q5,
-                    mirror_q6,
                 ),
                 (
-                    select(goes_on, place, high_now),
-                    low_now,
-                    high_now,
-                    select(goes_on, next_start, 0),
-                    select(goes_on, next_side, 1),
-                    steps_now,
-                    starts_left + select(has_part, -1, 0),
-                    select(is_better, distance, nearest),
-                    select(mirrors, 1, 0),
-                    select(is_better, joint_q1, kept_q1),
-                    select(is_better, joint_q2, kept_q2),
-                    select(is_better, joint_q3, kept_q3),
-                    select(is_better, joint_q4, kept_q4),
-                    select(is_better, joint_q5, kept_q5),
-                    select(is_better, joint_q6, kept_q6),
-                    mirror_now_q1,
-                    mirror_now_q2,
-                    mirror_now_q3,
-                    mirror_now_q4,
-                    mirror_now_q5,
-                    mirror_now_q6,
+                    next_stage,
+                    direction_next,
+                    place_next,
+                    width_next,
+                    side_next,
+                    number_now,
+                    shortest_now,
+                    aside_now,
+                    error_before_next,
+                    steps_left_next,
+                    was_mirrored_next,
+                    nearest_now,
+                    passes_left_next,
+                    at_next,
+                    trials_next,
+                    best_next,
+                    least_next,
+                    way_next,
+                    last_next,
+                    growth_before_next,
+                    bend_next,
+                    q1_next,
+                    met_from_q1_next,
+                    kept_q1_next,
+                    q2_next,
+                    met_from_q2_next,
+                    kept_q2_next,
+                    q3_next,
+                    met_from_q3_next,
+                    kept_q3_next,
+                    q4_next,
+                    met_from_q4_next,
+                    kept_q4_next,
+                    q5_next,
+                    met_from_q5_next,
+                    kept_q5_next,
+                    q6_next,
+                    met_from_q6_next,
+                    kept_q6_next,
                 ),
             )
         return (
-            nearest < 9.0,
-            select(nearest < 9.0, nearest, 0.0),
+            nearest_now < 9.0,
+            select(nearest_now < 9.0, nearest_now, 0.0),
             kept_q1,
             kept_q2,
             kept_q3,
@@ -2153,16 +2258,45 @@ class ArrayPrograms(Programs):
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
-        reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
-        reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
-        reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
-        # root scan along A6
+        found = run_where(
+            k.searched,
+            self.compute_wave,
+            (r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z),
+            status,
+            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
+        (
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            noise,
+            bound_of_fifth,
+        ) = found
+        reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+        reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+        reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
+        # root search along A6
         found = self.find_root(
             (
+                bound_of_fifth,
                 r11,
                 r12,
                 r13,
@@ -2176,6 +2310,7 @@ class ArrayPrograms(Programs):
                 y,
                 z,
                 k.searched,
+                noise,
                 False,
                 reference_a1,
                 reference_a2,
@@ -2184,6 +2319,23 @@ class ArrayPrograms(Programs):
                 sigma_elbow,
                 sigma_shoulder,
                 sigma_wrist,
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
             ),
             status,
         )
