@@ -67,8 +67,7 @@ def branch_statements(both: Scanned) -> tuple[Statement, ...]:
 def _wave(both: Scanned) -> Call:
     """The wave, which is the same for all branches."""
     program, _ = wave_program(both)
-    is_wanted = sp.true if both.closed is None else SEARCHED
-    return Call(program, _arguments(both, program), tuple(real(o.name) for o in program.outputs), wanted=is_wanted)
+    return Call(program, _arguments(both, program), tuple(real(o.name) for o in program.outputs))
 
 
 def _closed(both: Scanned, closed: Inverse) -> tuple[Statement, ...]:

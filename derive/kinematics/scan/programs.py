@@ -84,8 +84,6 @@ def step_program(mechanism: Mechanism) -> Program:
     """
     joints = [j.symbol for j in mechanism.solved_joints]
     lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
-    composed = named_pose(mechanism)
-    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
     names, agreement = [let.name for let in errors], _agreement(mechanism)
     squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
@@ -93,7 +91,7 @@ def step_program(mechanism: Mechanism) -> Program:
     lets, jacobian = _named_jacobian(mechanism)
     steps = tuple(real(f"step_{j.name}") for j in joints)
     shortest = _shortest_step(jacobian, names, steps)
-    body = (*_held(mechanism), *composed.statements, *pose, *errors, *agreement, size, *lets, *shortest)
+    body = (*_posed(mechanism), *errors, *agreement, size, *lets, *shortest)
     moved = [Output(moved_to(j).name, j + _way(j, s, lengths)) for j, s in zip(joints, steps, strict=True)]
     program = normalise("step_on_closure", body, [Output(ERROR.name, ERROR), *moved])
     return replace(program, summary="A step of all joints towards the pose, and the error before it")
@@ -106,13 +104,17 @@ def fits_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: s
         (), tuple(jacobian), (), determinant, "determinant of the Jacobian, positions in characteristic lengths"
     )
     fits = Let(flag(FITS), sp.And(*(sp.Ge(w, -NEARLY) for w in wanted)))
-    body = (*_held(mechanism), *named_pose(mechanism).statements, *lets, last, fits)
+    body: tuple[Statement, ...] = (*_posed(mechanism), *lets, last, fits)
     program = normalise("is_on_branch", body, [Output(FITS, fits.name)])
     return replace(program, summary="Whether joints are on the wanted branch")
 
 
-def _held(mechanism: Mechanism) -> list[Let]:
-    return [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
+def _posed(mechanism: Mechanism) -> list[Statement]:
+    """The statements that compute the pose at the joints."""
+    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
+    composed = named_pose(mechanism)
+    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
+    return [*held, *composed.statements, *pose]
 
 
 def solved_value(mechanism: Mechanism, joint: sp.Symbol) -> sp.Expr:
@@ -127,7 +129,7 @@ def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp
     return step * _SHRINKING * (SCALE if joint in lengths else 1)
 
 
-def _named_jacobian(mechanism: Mechanism) -> tuple[list[Let], sp.Matrix]:
+def _named_jacobian(mechanism: Mechanism) -> tuple[list[Statement], sp.Matrix]:
     """The statements that compute the Jacobian, and the Jacobian by the names of its entries."""
     lets, entries = solved_entries(mechanism)
     scaled, width = list(scaled_entries(mechanism, entries)), len(mechanism.solved_joints)

@@ -130,7 +130,7 @@ def _call(
     program: Program, arguments: Sequence[sp.Symbol], given: Mapping[sp.Symbol, sp.Expr], wanted: sp.Basic
 ) -> Call:
     """A call with arguments of the search as they are, and others."""
-    own = {s: s for s in program.inputs if s in arguments} | given
+    own = {s: s for s in program.inputs if s in arguments} | dict(given)
     pairs = tuple((s, own[s]) for s in program.inputs if s in own)
     flags = {IS_ROUNDING.name: IS_ROUNDING, FITS: IS_ROUNDING}
     names = tuple(called(o.name, flags.get(o.name, ERROR)) for o in program.outputs)

@@ -26,7 +26,7 @@ from derive.kept import kept_by_identity
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import Scanned, trial_of_all_signs
 from derive.kinematics.scan.product import Product, product_of
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.scan.programs import GOAL, LOOKED_FOR
 from derive.solver.unsolved import Unsolved
 from derive.work import stage
 
@@ -76,12 +76,13 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
         Let(real("taken"), share * value),
         Let(real("level"), real("taken") / 2),
     ]
+    is_last = sp.Ge(number, points)
     loop = Iterate(
         state=(number, *names),
         start=(sp.Integer(0),) * (1 + len(names)),
         step=tuple(s for s in step if isinstance(s, Let)),
         following=(number + 1, *(n + p for n, p in zip(names, parts, strict=True))),
-        done=sp.Ge(number, points),
+        done=sp.Or(sp.Not(LOOKED_FOR), is_last) if both.closed is not None else is_last,
         limit=points + 1,
         otherwise=None,
         note="the residuals of all branches, multiplied, at equal distances around the circle",

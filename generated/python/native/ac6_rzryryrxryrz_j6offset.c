@@ -139,6 +139,7 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11];
+  const bool looked_for = given[12] != 0.0;
   /* the residuals of all branches, multiplied, at equal distances around the circle */
   int sample = 0;
   double wave_cos_0 = 0.0;
@@ -440,7 +441,7 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     sin_9 = cos_8*sin_q6_tried + cos_q6_tried*sin_8;
     cos_10 = cos_9*cos_q6_tried - sin_9*sin_q6_tried;
     sin_10 = cos_9*sin_q6_tried + cos_q6_tried*sin_9;
-    if (sample >= 21) {
+    if ((!looked_for) || (sample >= 21)) {
       break;
     }
     sample = 1 + sample;
@@ -1334,7 +1335,7 @@ static softkin_status find_root(const void *machine, const double *given, double
       moved_q5, moved_q6, start_minus_q6, distance, nearest_now, moved, place_next, width_next, shortest_now,
       growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
       spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
-      value_in_shortening_place, shortening_place, value_in_place_of_start, sum_in_place_of_start,
+      value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
       place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
       q1_next, met_from_q1_next, kept_q1_next, q2_next, met_from_q2_next, kept_q2_next, q3_next,
       met_from_q3_next, kept_q3_next, q4_next, met_from_q4_next, kept_q4_next, q5_next, met_from_q5_next,
@@ -1342,8 +1343,8 @@ static softkin_status find_root(const void *machine, const double *given, double
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
   bool is_rounding, is_less, is_settled, is_near, steps_end, meets_pose, fits, way_ends, is_better,
-      is_shortest, mirrors, part_ends, start_ends, part_is_done, begins, side_ends, is_first, seeks_length,
-      turns_back, is_over, was_mirrored_next;
+      is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
+      seeks_length, turns_back, is_over, was_mirrored_next;
   for (int pass = 0; pass < 2001; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
@@ -1385,7 +1386,8 @@ static softkin_status find_root(const void *machine, const double *given, double
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
     is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 24) || (fabs(at - newton_place) <= 0.0));
-    is_near = is_settled && (least_now <= 0.001) && ((room_of_trial <= 1e-6) || (width > 1e-9) || (side > 0));
+    is_near = is_settled && ((width > 1e-9)
+        || ((least_now <= 0.001) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
@@ -1453,9 +1455,10 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 15 ? number_of_start_plus_one : 0));
-    part_is_done = start_ends && (next_number == 0) && (side <= 0);
+    is_nearest = nearest_now <= 2e-7 + place_;
+    side_ends = start_ends && (!is_nearest) && (side > 0) && (is_nearest || (next_number == 0));
+    part_is_done = start_ends && (!side_ends) && (is_nearest || (next_number == 0));
     begins = (!part_is_done) && (part_ends || start_ends);
-    side_ends = start_ends && (next_number == 0) && (side > 0);
     is_first = part_ends || side_ends;
     number_now = is_first ? 1 : (start_ends ? next_number : number_of_start);
     seeks_length = begins && ((number_now == 10) || (number_now == 13));
@@ -1495,8 +1498,6 @@ static softkin_status find_root(const void *machine, const double *given, double
         : (at_minus_growth_by_bend_now < place_ ? place_
         : (at_minus_growth_by_bend_now > place_plus_width ? place_plus_width : at_minus_growth_by_bend_now)));
     shortening_place = trials < 8 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
-    value_in_place_of_start = (number_now == 11) || (number_now == 14) ? aside_now + shortest_now
-        : ((number_now == 12) || (number_now == 15) ? shortest_now - aside_now : shortest_now);
     sum_in_place_of_start = place_
         + (number_now == 9 ? 0.875
         : (number_now == 8 ? 0.625
@@ -1504,6 +1505,8 @@ static softkin_status find_root(const void *machine, const double *given, double
         : (number_now == 6 ? 0.125
         : (number_now == 5 ? 0.75
         : (number_now == 4 ? 0.25 : (number_now == 3 ? 1.0 : (number_now == 2 ? 0.0 : 0.5))))))))*width;
+    value_in_place_of_start = (number_now == 11) || (number_now == 14) ? aside_now + shortest_now
+        : ((number_now == 12) || (number_now == 15) ? shortest_now - aside_now : shortest_now);
     place_of_start = seeks_length ? place_
         : (number_now > 9 ? (value_in_place_of_start < place_ ? place_
         : (value_in_place_of_start > place_plus_width ? place_plus_width : value_in_place_of_start))
@@ -1785,13 +1788,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,
         "without an offset, only the first branch of the crossing has a solution", "", 0.0, 0);
   }
-  double results[19] = {0.0};
-  if (k->searched) {
-    const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z};
-    const softkin_status status = find_compute_wave(k, arguments, results, why);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
+  double results[19];
+  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched};
+  const softkin_status status = find_compute_wave(k, arguments, results, why);
+  if (status != SOFTKIN_OK) {
+    return status;
   }
   const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
       wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
@@ -2321,13 +2322,11 @@ static softkin_status find_search_given(const void *machine, const softkin_frame
       ref_a3, ref_a4, ref_a5, ref_a6, x, y, z}, 18)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  double results[19] = {0.0};
-  if (k->searched) {
-    const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z};
-    const softkin_status status = find_compute_wave(k, arguments, results, why);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
+  double results[19];
+  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched};
+  const softkin_status status = find_compute_wave(k, arguments, results, why);
+  if (status != SOFTKIN_OK) {
+    return status;
   }
   const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
       wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
@@ -2427,206 +2426,6 @@ static softkin_status find_from_joints(const void *machine, const double *joints
   axes[4] = axis_a5;
   axes[5] = axis_a6;
   return SOFTKIN_OK;
-}
-
-/* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
- * has an answer. */
-static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
-    softkin_status *statuses, double *axes) {
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
-      r13 = frame->rotation[0][2], r23 = frame->rotation[1][2], r33 = frame->rotation[2][2],
-      ref_a1 = reference[0], ref_a2 = reference[1], ref_a3 = reference[2], ref_a4 = reference[3],
-      ref_a5 = reference[4], ref_a6 = reference[5];
-  const double a2_plus_length_25_2 = k->a2 + k->length_25;
-  const double a2_minus_length_25_2 = k->a2 - k->length_25;
-  if (!(!k->searched)) {
-    return false;
-  }
-  /* wrist centre: the last joints do not move this point */
-  const double wrist_x_closed = x - k->d6*r13;
-  const double wrist_y_closed = y - k->d6*r23;
-  /* distance of the point from the axis of q1 */
-  const double distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed);
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_closed_front = distance_q1_closed - k->a1;
-  const double wrist_z_closed = z - k->d6*r33;
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_z_from_q1_closed = wrist_z_closed - k->d1;
-  const double wrist_z_from_q1_closed_squared = wrist_z_from_q1_closed*wrist_z_from_q1_closed;
-  /* distance that the remaining links must span */
-  const double reach_closed_front = softkin_root(wrist_z_from_q1_closed_squared
-      + wrist_x_from_q1_closed_front*wrist_x_from_q1_closed_front);
-  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_closed_front = (a2_plus_length_25_2 + reach_closed_front)
-      *(a2_plus_length_25_2 - reach_closed_front);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_closed_front = (reach_closed_front - a2_minus_length_25_2)
-      *(a2_minus_length_25_2 + reach_closed_front);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_q3_closed_front = one_less_cos_q3_closed_front + one_plus_cos_q3_closed_front;
-  const double divisor_of_cos_q3_closed_front = sum_q3_closed_front > 0.0 ? sum_q3_closed_front : 1.0;
-  const double cos_swing_q3_closed_front = (one_plus_cos_q3_closed_front - one_less_cos_q3_closed_front)
-      /divisor_of_cos_q3_closed_front;
-  int refusal_front_rising, refusal_front_falling;
-  if (fabs(cos_swing_q3_closed_front) <= 1.0000000000005) {
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_front_rising = 0;
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_front_falling = 3;
-  } else {
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_front_rising = 3;
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_front_falling = 3;
-  }
-  /* coordinate of the point that the remaining links must reach */
-  const double wrist_x_from_q1_closed_back = -k->a1 - distance_q1_closed;
-  /* distance that the remaining links must span */
-  const double reach_closed_back = softkin_root(wrist_z_from_q1_closed_squared
-      + wrist_x_from_q1_closed_back*wrist_x_from_q1_closed_back);
-  /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_closed_back = (a2_plus_length_25_2 + reach_closed_back)
-      *(a2_plus_length_25_2 - reach_closed_back);
-  /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_closed_back = (reach_closed_back - a2_minus_length_25_2)
-      *(a2_minus_length_25_2 + reach_closed_back);
-  /* sum of both, twice the scale: cosine² + sine² is then 1 */
-  const double sum_q3_closed_back = one_less_cos_q3_closed_back + one_plus_cos_q3_closed_back;
-  const double divisor_of_cos_q3_closed_back = sum_q3_closed_back > 0.0 ? sum_q3_closed_back : 1.0;
-  const double cos_swing_q3_closed_back = (one_plus_cos_q3_closed_back - one_less_cos_q3_closed_back)
-      /divisor_of_cos_q3_closed_back;
-  int refusal_back_rising, refusal_back_falling;
-  if (fabs(cos_swing_q3_closed_back) <= 1.0000000000005) {
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_back_rising = 0;
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_back_falling = 3;
-  } else {
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_back_rising = 3;
-    /* without an offset, only the first branch of the crossing has a solution */
-    refusal_back_falling = 3;
-  }
-  const double near_a1 = k->single_a1 ? k->mid_a1 : ref_a1;
-  const double near_a2 = k->single_a2 ? k->mid_a2 : ref_a2;
-  const double near_a3 = k->single_a3 ? k->mid_a3 : ref_a3;
-  const double near_a4 = k->single_a4 ? k->mid_a4 : ref_a4;
-  const double near_a5 = k->single_a5 ? k->mid_a5 : ref_a5;
-  const double near_a6 = k->single_a6 ? k->mid_a6 : ref_a6;
-  statuses[0] = (softkin_status)(refusal_front_rising);
-  axes[0] = softkin_on_turn(axis_a1, near_a1);
-  axes[1] = softkin_on_turn(axis_a2, near_a2);
-  axes[2] = softkin_on_turn(axis_a3, near_a3);
-  axes[3] = softkin_on_turn(axis_a4, near_a4);
-  axes[4] = softkin_on_turn(axis_a5, near_a5);
-  axes[5] = softkin_on_turn(axis_a6, near_a6);
-  statuses[1] = (softkin_status)(refusal_back_rising);
-  axes[6] = softkin_on_turn(axis_a1, near_a1);
-  axes[7] = softkin_on_turn(axis_a2, near_a2);
-  axes[8] = softkin_on_turn(axis_a3, near_a3);
-  axes[9] = softkin_on_turn(axis_a4, near_a4);
-  axes[10] = softkin_on_turn(axis_a5, near_a5);
-  axes[11] = softkin_on_turn(axis_a6, near_a6);
-  statuses[2] = (softkin_status)(refusal_front_rising);
-  axes[12] = softkin_on_turn(axis_a1, near_a1);
-  axes[13] = softkin_on_turn(axis_a2, near_a2);
-  axes[14] = softkin_on_turn(axis_a3, near_a3);
-  axes[15] = softkin_on_turn(axis_a4, near_a4);
-  axes[16] = softkin_on_turn(axis_a5, near_a5);
-  axes[17] = softkin_on_turn(axis_a6, near_a6);
-  statuses[3] = (softkin_status)(refusal_back_rising);
-  axes[18] = softkin_on_turn(axis_a1, near_a1);
-  axes[19] = softkin_on_turn(axis_a2, near_a2);
-  axes[20] = softkin_on_turn(axis_a3, near_a3);
-  axes[21] = softkin_on_turn(axis_a4, near_a4);
-  axes[22] = softkin_on_turn(axis_a5, near_a5);
-  axes[23] = softkin_on_turn(axis_a6, near_a6);
-  statuses[4] = (softkin_status)(refusal_front_rising);
-  axes[24] = softkin_on_turn(axis_a1, near_a1);
-  axes[25] = softkin_on_turn(axis_a2, near_a2);
-  axes[26] = softkin_on_turn(axis_a3, near_a3);
-  axes[27] = softkin_on_turn(axis_a4, near_a4);
-  axes[28] = softkin_on_turn(axis_a5, near_a5);
-  axes[29] = softkin_on_turn(axis_a6, near_a6);
-  statuses[5] = (softkin_status)(refusal_back_rising);
-  axes[30] = softkin_on_turn(axis_a1, near_a1);
-  axes[31] = softkin_on_turn(axis_a2, near_a2);
-  axes[32] = softkin_on_turn(axis_a3, near_a3);
-  axes[33] = softkin_on_turn(axis_a4, near_a4);
-  axes[34] = softkin_on_turn(axis_a5, near_a5);
-  axes[35] = softkin_on_turn(axis_a6, near_a6);
-  statuses[6] = (softkin_status)(refusal_front_rising);
-  axes[36] = softkin_on_turn(axis_a1, near_a1);
-  axes[37] = softkin_on_turn(axis_a2, near_a2);
-  axes[38] = softkin_on_turn(axis_a3, near_a3);
-  axes[39] = softkin_on_turn(axis_a4, near_a4);
-  axes[40] = softkin_on_turn(axis_a5, near_a5);
-  axes[41] = softkin_on_turn(axis_a6, near_a6);
-  statuses[7] = (softkin_status)(refusal_back_rising);
-  axes[42] = softkin_on_turn(axis_a1, near_a1);
-  axes[43] = softkin_on_turn(axis_a2, near_a2);
-  axes[44] = softkin_on_turn(axis_a3, near_a3);
-  axes[45] = softkin_on_turn(axis_a4, near_a4);
-  axes[46] = softkin_on_turn(axis_a5, near_a5);
-  axes[47] = softkin_on_turn(axis_a6, near_a6);
-  statuses[8] = (softkin_status)(refusal_front_falling);
-  axes[48] = softkin_on_turn(axis_a1, near_a1);
-  axes[49] = softkin_on_turn(axis_a2, near_a2);
-  axes[50] = softkin_on_turn(axis_a3, near_a3);
-  axes[51] = softkin_on_turn(axis_a4, near_a4);
-  axes[52] = softkin_on_turn(axis_a5, near_a5);
-  axes[53] = softkin_on_turn(axis_a6, near_a6);
-  statuses[9] = (softkin_status)(refusal_back_falling);
-  axes[54] = softkin_on_turn(axis_a1, near_a1);
-  axes[55] = softkin_on_turn(axis_a2, near_a2);
-  axes[56] = softkin_on_turn(axis_a3, near_a3);
-  axes[57] = softkin_on_turn(axis_a4, near_a4);
-  axes[58] = softkin_on_turn(axis_a5, near_a5);
-  axes[59] = softkin_on_turn(axis_a6, near_a6);
-  statuses[10] = (softkin_status)(refusal_front_falling);
-  axes[60] = softkin_on_turn(axis_a1, near_a1);
-  axes[61] = softkin_on_turn(axis_a2, near_a2);
-  axes[62] = softkin_on_turn(axis_a3, near_a3);
-  axes[63] = softkin_on_turn(axis_a4, near_a4);
-  axes[64] = softkin_on_turn(axis_a5, near_a5);
-  axes[65] = softkin_on_turn(axis_a6, near_a6);
-  statuses[11] = (softkin_status)(refusal_back_falling);
-  axes[66] = softkin_on_turn(axis_a1, near_a1);
-  axes[67] = softkin_on_turn(axis_a2, near_a2);
-  axes[68] = softkin_on_turn(axis_a3, near_a3);
-  axes[69] = softkin_on_turn(axis_a4, near_a4);
-  axes[70] = softkin_on_turn(axis_a5, near_a5);
-  axes[71] = softkin_on_turn(axis_a6, near_a6);
-  statuses[12] = (softkin_status)(refusal_front_falling);
-  axes[72] = softkin_on_turn(axis_a1, near_a1);
-  axes[73] = softkin_on_turn(axis_a2, near_a2);
-  axes[74] = softkin_on_turn(axis_a3, near_a3);
-  axes[75] = softkin_on_turn(axis_a4, near_a4);
-  axes[76] = softkin_on_turn(axis_a5, near_a5);
-  axes[77] = softkin_on_turn(axis_a6, near_a6);
-  statuses[13] = (softkin_status)(refusal_back_falling);
-  axes[78] = softkin_on_turn(axis_a1, near_a1);
-  axes[79] = softkin_on_turn(axis_a2, near_a2);
-  axes[80] = softkin_on_turn(axis_a3, near_a3);
-  axes[81] = softkin_on_turn(axis_a4, near_a4);
-  axes[82] = softkin_on_turn(axis_a5, near_a5);
-  axes[83] = softkin_on_turn(axis_a6, near_a6);
-  statuses[14] = (softkin_status)(refusal_front_falling);
-  axes[84] = softkin_on_turn(axis_a1, near_a1);
-  axes[85] = softkin_on_turn(axis_a2, near_a2);
-  axes[86] = softkin_on_turn(axis_a3, near_a3);
-  axes[87] = softkin_on_turn(axis_a4, near_a4);
-  axes[88] = softkin_on_turn(axis_a5, near_a5);
-  axes[89] = softkin_on_turn(axis_a6, near_a6);
-  statuses[15] = (softkin_status)(refusal_back_falling);
-  axes[90] = softkin_on_turn(axis_a1, near_a1);
-  axes[91] = softkin_on_turn(axis_a2, near_a2);
-  axes[92] = softkin_on_turn(axis_a3, near_a3);
-  axes[93] = softkin_on_turn(axis_a4, near_a4);
-  axes[94] = softkin_on_turn(axis_a5, near_a5);
-  axes[95] = softkin_on_turn(axis_a6, near_a6);
-  return true;
 }
 
 static softkin_status find_root_of(const void *machine, const double *given, double *results,
@@ -2780,7 +2579,6 @@ const softkin_mechanism ac6_rzryryrxryrz_j6offset_mechanism = {
     .jacobian = find_jacobian,
     .search_given = find_search_given,
     .from_joints = find_from_joints,
-    .every_branch = find_every_branch,
     .every_root = find_every_root,
 };
 

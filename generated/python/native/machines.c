@@ -62,8 +62,6 @@
 #include "wrist2.h"
 #include "wrist3.h"
 
-softkin_regular ac6_rzryryrxryrz_j6offset_regular;
-softkin_regular_all ac6_rzryryrxryrz_j6offset_regular_all;
 softkin_regular ac6_threeparallel_regular;
 softkin_regular_all ac6_threeparallel_regular_all;
 softkin_regular ac6_txtytzryrxrz_regular;
@@ -153,8 +151,7 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 54ab4a020aeb4a5e", &ac6_rzryryrxryrz_j6offset_mechanism,
-        {ac6_rzryryrxryrz_j6offset_regular, ac6_rzryryrxryrz_j6offset_regular_all}},
+    {"ac6_rzryryrxryrz_j6offset 8e30a6339317e60a", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
     {"ac6_threeparallel a721580085cf1d29", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,

@@ -32,12 +32,12 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1328718 additions, 1882979 multiplications, 108055 divisions, 44024 square roots, 88044 sines
-    inverse, all 16 branches: 21259761 additions, 30127760 multiplications, 1728880 divisions, 704384 square
-    roots, 1408704 sines
+    inverse: 1333844 additions, 1888492 multiplications, 108143 divisions, 44024 square roots, 88088 sines
+    inverse, all 16 branches: 21341777 additions, 30215968 multiplications, 1730288 divisions, 704384 square
+    roots, 1409408 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 3153 additions, 5563 multiplications, 99 divisions, 3 square
-    roots, 56 sines
+    a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
+    12 sines
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
     one step of the search: at most 2001 passes, all of which are counted
@@ -54,7 +54,7 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
     The equations were not checked in a finite field: its roots are searched along a joint.
-    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 1.
+    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
 """
 
 from __future__ import annotations
@@ -68,12 +68,11 @@ from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, reason
 from softkin._root import every_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Parameter, Status
-from softkin._unrolled.ac6_rzryryrxryrz_j6offset import unrolled
 
 if TYPE_CHECKING:
     from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
     from softkin._ends import Limits
-    from softkin._types import Matrix, PlainFrame, Reals, Rotation, Signs, Turns, Values, Vector
+    from softkin._types import Matrix, Reals, Rotation, Signs, Turns, Values, Vector
 
 
 class Constants:
@@ -124,10 +123,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
+    __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 54ab4a020aeb4a5e"
+    KEY = "ac6_rzryryrxryrz_j6offset 8e30a6339317e60a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -286,7 +285,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """
         self._accept(locals())
         self._constants = Constants(self)
-        self._all_trusted, self._one_trusted, self._finish = unrolled(self._constants)
         self._seal()
 
     def _compute_wave(self, given: Values) -> Values | Status:
@@ -304,6 +302,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_x,
             goal_y,
             goal_z,
+            looked_for,
         ) = given
         k = self._constants
         a1, a1_squared, a2, a2_minus_length_25_squared = k.a1, k.a1_squared, k.a2, k.a2_minus_length_25_squared
@@ -609,7 +608,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             sin_9 = cos_8 * sin_q6_tried + cos_q6_tried * sin_8
             cos_10 = cos_9 * cos_q6_tried - sin_9 * sin_q6_tried
             sin_10 = cos_9 * sin_q6_tried + cos_q6_tried * sin_9
-            if sample >= 21:
+            if (not looked_for) or (sample >= 21):
                 break
             sample = 1 + sample
             wave_cos_0 = level + wave_cos_0
@@ -1829,7 +1828,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
             is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 24) or (abs(at - newton_place) <= 0.0))
-            is_near = is_settled and (least_now <= 0.001) and ((room_of_trial <= 1e-6) or (width > 1e-9) or (side > 0))
+            is_near = is_settled and (
+                (width > 1e-9) or ((least_now <= 0.001) and ((room_of_trial <= 1e-6) or (side > 0)))
+            )
             if is_near:
                 found = self._joints_at(
                     (
@@ -1949,9 +1950,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     else (number_of_start_plus_one if number_of_start < 15 else 0)
                 )
             )
-            part_is_done = start_ends and (next_number == 0) and (side <= 0)
+            is_nearest = nearest_now <= 2e-7 + place
+            side_ends = start_ends and (not is_nearest) and (side > 0) and (is_nearest or (next_number == 0))
+            part_is_done = start_ends and (not side_ends) and (is_nearest or (next_number == 0))
             begins = (not part_is_done) and (part_ends or start_ends)
-            side_ends = start_ends and (next_number == 0) and (side > 0)
             is_first = part_ends or side_ends
             number_now = 1 if is_first else (next_number if start_ends else number_of_start)
             seeks_length = begins and ((number_now == 10) or (number_now == 13))
@@ -2043,11 +2045,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
             )
             shortening_place = place + (1.0 + trials) * spread if trials < 8 else value_in_shortening_place
-            value_in_place_of_start = (
-                aside_now + shortest_now
-                if (number_now == 11) or (number_now == 14)
-                else (shortest_now - aside_now if (number_now == 12) or (number_now == 15) else shortest_now)
-            )
             sum_in_place_of_start = (
                 place
                 + (
@@ -2076,6 +2073,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     )
                 )
                 * width
+            )
+            value_in_place_of_start = (
+                aside_now + shortest_now
+                if (number_now == 11) or (number_now == 14)
+                else (shortest_now - aside_now if (number_now == 12) or (number_now == 15) else shortest_now)
             )
             place_of_start = (
                 place
@@ -2184,53 +2186,30 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6, x, y, z
         ):
             return Status.BAD_INPUT
-        if searched:
-            found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z))
-            if isinstance(found, Status):
-                return found
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-                bound_of_fifth,
-            ) = found
-        else:
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-                bound_of_fifth,
-            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched))
+        if isinstance(found, Status):
+            return found
+        (
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            noise,
+            bound_of_fifth,
+        ) = found
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
@@ -2563,53 +2542,30 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             return Diagnosis(
                 Status.UNREACHABLE, "without an offset, only the first branch of the crossing has a solution", 0.0
             )
-        if searched:
-            found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z))
-            if isinstance(found, Status):
-                return Diagnosis(found, "", 0.0)
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-                bound_of_fifth,
-            ) = found
-        else:
-            (
-                wave_cos_0,
-                wave_cos_1,
-                wave_cos_2,
-                wave_cos_3,
-                wave_cos_4,
-                wave_cos_5,
-                wave_cos_6,
-                wave_cos_7,
-                wave_cos_8,
-                wave_sin_1,
-                wave_sin_2,
-                wave_sin_3,
-                wave_sin_4,
-                wave_sin_5,
-                wave_sin_6,
-                wave_sin_7,
-                wave_sin_8,
-                noise,
-                bound_of_fifth,
-            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched))
+        if isinstance(found, Status):
+            return Diagnosis(found, "", 0.0)
+        (
+            wave_cos_0,
+            wave_cos_1,
+            wave_cos_2,
+            wave_cos_3,
+            wave_cos_4,
+            wave_cos_5,
+            wave_cos_6,
+            wave_cos_7,
+            wave_cos_8,
+            wave_sin_1,
+            wave_sin_2,
+            wave_sin_3,
+            wave_sin_4,
+            wave_sin_5,
+            wave_sin_6,
+            wave_sin_7,
+            wave_sin_8,
+            noise,
+            bound_of_fifth,
+        ) = found
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
@@ -3021,24 +2977,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a root scan."""
         return every_root(self._find_root, given, 18, 15)
-
-    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        solve = self._all_trusted  # a separate statement is faster
-        return solve(frame, reference) or super().branches(
-            frame, reference
-        )  # where digits may be lost, one branch after the other
-
-    def branch(self, frame: PlainFrame, signs: Signs, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        solve = self._one_trusted
-        found = solve(frame, signs, reference)
-        return (
-            super().branch(frame, signs, reference) if found == () else found
-        )  # where digits may be lost, by the complete program
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | int, ...]:
-        return self._finished(self._all_trusted, self._finish, position, rotation, reference)
 
     def _chain(self) -> tuple[Link, ...]:
         """The chain as it is described, from the base to the frame."""

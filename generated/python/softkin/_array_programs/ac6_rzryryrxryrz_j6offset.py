@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 4292
+    VALUES = 8449
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -55,6 +55,7 @@ class ArrayPrograms(Programs):
             goal_x,
             goal_y,
             goal_z,
+            looked_for,
         ) = given
         k = self.constants
         # the residuals of all branches, multiplied, at equal distances around the circle
@@ -365,7 +366,7 @@ class ArrayPrograms(Programs):
             sin_9 = cos_8 * sin_q6_tried + cos_q6_tried * sin_8
             cos_10 = cos_9 * cos_q6_tried - sin_9 * sin_q6_tried
             sin_10 = cos_9 * sin_q6_tried + cos_q6_tried * sin_9
-            done = sample >= 21
+            done = (opposite(looked_for)) | (sample >= 21)
             if settled(done, status):
                 break
             (
@@ -1661,7 +1662,7 @@ class ArrayPrograms(Programs):
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
             is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 24) | (absolute(at - newton_place) <= 0.0))
-            is_near = is_settled & (least_now <= 0.001) & ((room_of_trial <= 1e-6) | (width > 1e-9) | (side > 0))
+            is_near = is_settled & ((width > 1e-9) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
             found = run_where(
                 is_near,
                 self.joints_at,
@@ -1775,9 +1776,10 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 15, number_of_start_plus_one, 0),
                 ),
             )
-            part_is_done = start_ends & (next_number == 0) & (side <= 0)
+            is_nearest = nearest_now <= 2e-7 + place
+            side_ends = start_ends & (opposite(is_nearest)) & (side > 0) & (is_nearest | (next_number == 0))
+            part_is_done = start_ends & (opposite(side_ends)) & (is_nearest | (next_number == 0))
             begins = (opposite(part_is_done)) & (part_ends | start_ends)
-            side_ends = start_ends & (next_number == 0) & (side > 0)
             is_first = part_ends | side_ends
             number_now = select(is_first, 1, select(start_ends, next_number, number_of_start))
             seeks_length = begins & ((number_now == 10) | (number_now == 13))
@@ -1865,11 +1867,6 @@ class ArrayPrograms(Programs):
                 ),
             )
             shortening_place = select(trials < 8, place + (1.0 + trials) * spread, value_in_shortening_place)
-            value_in_place_of_start = select(
-                (number_now == 11) | (number_now == 14),
-                aside_now + shortest_now,
-                select((number_now == 12) | (number_now == 15), shortest_now - aside_now, shortest_now),
-            )
             sum_in_place_of_start = (
                 place
                 + select(
@@ -1898,6 +1895,11 @@ class ArrayPrograms(Programs):
                     ),
                 )
                 * width
+            )
+            value_in_place_of_start = select(
+                (number_now == 11) | (number_now == 14),
+                aside_now + shortest_now,
+                select((number_now == 12) | (number_now == 15), shortest_now - aside_now, shortest_now),
             )
             place_of_start = select(
                 seeks_length,
@@ -2262,13 +2264,7 @@ class ArrayPrograms(Programs):
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
-        found = run_where(
-            k.searched,
-            self.compute_wave,
-            (r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z),
-            status,
-            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        )
+        found = self.compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched), status)
         (
             wave_cos_0,
             wave_cos_1,
