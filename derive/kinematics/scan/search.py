@@ -23,7 +23,7 @@ from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
 from derive.kinematics.scan.programs import ERROR, FITS, FOUND, LOOKED_FOR, START, begun, moved_to
-from derive.kinematics.scan.starts import is_new_length, is_point, next_number, of_length, place_of
+from derive.kinematics.scan.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
 from derive.kinematics.scan.tried import (
     AT,
     BEST_NOW,
@@ -173,7 +173,7 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(is_point(_WIDTH))))
     # a simple root leaves no residual on its branch; the other side of a step counts only where its roots join
     is_simple = sp.And(sp.Le(LEAST_NOW, _NEAR), sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
-    yield Let(flag("is_near"), sp.And(flag("is_settled"), sp.Or(sp.Not(is_point(_WIDTH)), is_simple)))
+    yield Let(flag("is_near"), sp.And(flag("is_settled"), sp.Or(sp.Not(is_narrow(_WIDTH)), is_simple)))
     given = {TRIED: START + direction * BEST_NOW, SIDE: SIDE}
     given = {s: v for s, v in given.items() if s in steps.joints_at.inputs}
     yield _call(steps.joints_at, arguments, given, flag("is_near"))

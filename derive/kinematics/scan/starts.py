@@ -27,6 +27,11 @@ def is_point(width: sp.Expr) -> sp.Expr:
     return sp.Le(width, sp.Float(_WIDTHS[0][0]))
 
 
+def is_narrow(width: sp.Expr) -> sp.Expr:
+    """Whether no length is looked for in a part."""
+    return sp.Le(width, _NARROW)
+
+
 def next_number(lengths: int, number: sp.Expr, width: sp.Expr) -> sp.Expr:
     """The number of the next start in a part, 0 where there is none."""
     last = POINTS + BESIDE * lengths

@@ -28,7 +28,9 @@ _LEAST, _WAY = real("least"), real("way")
 _LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
 _ASIDE = sp.Float("1.7")
 """The tangent of 60 degrees."""
-_GRID, _SECANTS, _NEWTONS = 9, 12, 24
+_GRID, _SECANTS, _NEWTONS = 9, 12, 8
+_STILL = sp.Float("1e-10")
+"""A step of this length (radians) ends the method: the steps on the closure follow."""
 _ZERO, _ONE, _MOST = sp.Integer(0), sp.Integer(1), sp.Float("1e30")
 
 
@@ -80,7 +82,7 @@ def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr) -> Iterator[L
 
 def newton_is_done(is_narrow: sp.Basic) -> sp.Basic:
     """Whether Newton's method ends: there is no step in a narrow part."""
-    return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), 0), is_narrow)
+    return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL), is_narrow)
 
 
 def shortest_step(ends: tuple[sp.Expr, sp.Expr], growth: sp.Expr) -> Iterator[Let]:

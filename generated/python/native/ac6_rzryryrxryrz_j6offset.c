@@ -1181,8 +1181,7 @@ static softkin_status find_is_on_branch(const void *machine, const double *given
     softkin_refusal *why) {
   (void)why;
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double q1 = given[0], q2 = given[1], q3 = given[2], q4 = given[3], q5 = given[4], x = given[9],
-      y = given[10], z = given[11];
+  const double q1 = given[0], q2 = given[1], q3 = given[2], q4 = given[3], q5 = given[4];
   const int wanted_crossing = (int)given[5], wanted_elbow = (int)given[6], wanted_shoulder = (int)given[7],
       wanted_wrist = (int)given[8];
   const double cos_q1 = cos(q1);
@@ -1207,54 +1206,60 @@ static softkin_status find_is_on_branch(const void *machine, const double *given
   const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
   const double r33_at_q4 = cos_q23*cos_q4;
   const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
-  const double rate_1_1 = -k->one_by_machine_scale*y;
-  const double z_minus_d1 = z - k->d1;
-  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
-  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
-  const double cos_q2 = cos(q2);
-  const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_minus_z_at_q3 = z - z_at_q3;
-  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
-  const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_at_q2 = k->a1*sin_q1;
   const double sin_q2 = sin(q2);
   const double r23_at_q2 = sin_q1*sin_q2;
   const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
   const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
+  const double y = y_at_q6 + k->d6*r23_at_q5;
+  const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double cos_q2 = cos(q2);
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
+  const double z = z_at_q6 + k->d6*r33_at_q5;
+  const double z_minus_d1 = z - k->d1;
+  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q3 = z - z_at_q3;
+  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q4 = z - z_at_q4;
   const double y_minus_y_at_q4 = y - y_at_q4;
   const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
-  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
   const double z_minus_z_at_q5 = z - z_at_q5;
-  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
   const double y_minus_y_at_q5 = y - y_at_q5;
   const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
-  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double sum_in_rate_1_6 = y_minus_y_at_q5 - k->j6_offset_x*r21_at_q5;
-  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double sum_in_rate_1_6_2 = z_minus_z_at_q5 - k->j6_offset_x*r31_at_q5;
-  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*sum_in_rate_1_6_2 - r33_at_q5*sum_in_rate_1_6);
-  const double rate_2_1 = k->one_by_machine_scale*x;
-  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
-  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
   const double x_at_q2 = k->a1*cos_q1;
   const double r13_at_q2 = cos_q1*sin_q2;
   const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
   const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
+  const double x = x_at_q6 + k->d6*r13_at_q5;
+  const double rate_2_1 = k->one_by_machine_scale*x;
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
   const double x_minus_x_at_q4 = x - x_at_q4;
   const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
   const double x_minus_x_at_q5 = x - x_at_q5;
   const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
-  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double sum_in_rate_2_6 = x_minus_x_at_q5 - k->j6_offset_x*r11_at_q5;
-  const double rate_2_6 = (r33_at_q5*sum_in_rate_2_6 - r13_at_q5*sum_in_rate_1_6_2)*k->one_by_machine_scale;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
   const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
   const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
   const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
   const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
-  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*sum_in_rate_1_6 - r23_at_q5*sum_in_rate_2_6);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
   /* determinant of the Jacobian, positions in characteristic lengths */
   double system[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
       {rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6},
@@ -2435,7 +2440,7 @@ static softkin_status find_root_of(const void *machine, const double *given, dou
 
 /* The joints at every root of the search, the nearest to the reference first. */
 static void find_every_root(const void *machine, const double *given, softkin_take take, void *context) {
-  const softkin_roots of = {find_root_of, machine, given, 43, 18, 15, 6};
+  const softkin_roots of = {find_root_of, machine, given, 40, 18, 15, 6};
   softkin_every_root(&of, take, context);
 }
 

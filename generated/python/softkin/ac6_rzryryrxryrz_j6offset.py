@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1333844 additions, 1888492 multiplications, 108143 divisions, 44024 square roots, 88088 sines
-    inverse, all 16 branches: 21341777 additions, 30215968 multiplications, 1730288 divisions, 704384 square
+    inverse: 1345850 additions, 1894495 multiplications, 108143 divisions, 44024 square roots, 88088 sines
+    inverse, all 16 branches: 21533873 additions, 30312016 multiplications, 1730288 divisions, 704384 square
     roots, 1409408 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 8e30a6339317e60a"
+    KEY = "ac6_rzryryrxryrz_j6offset d2235f4c9a79a6dc"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1521,9 +1521,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _is_on_branch(self, given: Values) -> Values | Status:
         """Whether joints are on the wanted branch."""
-        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist, x, y, z = given
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
         k = self._constants
-        a1, a2, a3, d1, d4, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.j6_offset_x
+        a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
         one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
         cos_q1 = cos(q1)
         q2_plus_q3 = q2 + q3
@@ -1547,54 +1547,60 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        rate_1_1 = -one_by_machine_scale * y
-        z_minus_d1 = z - d1
-        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2 * cos_q2
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_at_q4 = z_at_q3 + a3 * cos_q23
-        z_minus_z_at_q4 = z - z_at_q4
         y_at_q2 = a1 * sin_q1
         sin_q2 = sin(q2)
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + a2 * r23_at_q2
         y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        rate_1_1 = -one_by_machine_scale * y
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
+        z_minus_d1 = z - d1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
         rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_at_q5 = z_at_q4 - d4 * sin_q23
         z_minus_z_at_q5 = z - z_at_q5
-        y_at_q5 = y_at_q4 + d4 * r21_at_q23
         y_minus_y_at_q5 = y - y_at_q5
         rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        sum_in_rate_1_6 = y_minus_y_at_q5 - j6_offset_x * r21_at_q5
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        sum_in_rate_1_6_2 = z_minus_z_at_q5 - j6_offset_x * r31_at_q5
-        rate_1_6 = one_by_machine_scale * (r23_at_q5 * sum_in_rate_1_6_2 - r33_at_q5 * sum_in_rate_1_6)
-        rate_2_1 = one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
         x_at_q2 = a1 * cos_q1
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + a2 * r13_at_q2
         x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        rate_2_1 = one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
         x_minus_x_at_q4 = x - x_at_q4
         rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_at_q5 = x_at_q4 + d4 * r11_at_q23
         x_minus_x_at_q5 = x - x_at_q5
         rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        sum_in_rate_2_6 = x_minus_x_at_q5 - j6_offset_x * r11_at_q5
-        rate_2_6 = (r33_at_q5 * sum_in_rate_2_6 - r13_at_q5 * sum_in_rate_1_6_2) * one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
         rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
         rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
         rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
         rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = one_by_machine_scale * (r13_at_q5 * sum_in_rate_1_6 - r23_at_q5 * sum_in_rate_2_6)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
@@ -1658,9 +1664,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_6,
             wave_sin_7,
             wave_sin_8,
-            _,
-            _,
-            _,
         ) = given
         sum_in_way_ends = 360.0 * DEGREE - 1e-7
         # one step of the search

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8449
+    VALUES = 8405
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1362,7 +1362,7 @@ class ArrayPrograms(Programs):
 
     def is_on_branch(self, given: Values, status: Codes) -> Values:
         """Whether joints are on the wanted branch."""
-        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist, x, y, z = given
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
         k = self.constants
         cos_q1 = cos(q1)
         q2_plus_q3 = q2 + q3
@@ -1386,54 +1386,60 @@ class ArrayPrograms(Programs):
         r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
         r33_at_q4 = cos_q23 * cos_q4
         r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        rate_1_1 = -k.one_by_machine_scale * y
-        z_minus_d1 = z - k.d1
-        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23
-        z_minus_z_at_q4 = z - z_at_q4
         y_at_q2 = k.a1 * sin_q1
         sin_q2 = sin(q2)
         r23_at_q2 = sin_q1 * sin_q2
         y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
         y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        rate_1_1 = -k.one_by_machine_scale * y
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        z_minus_d1 = z - k.d1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
         y_minus_y_at_q4 = y - y_at_q4
         rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_at_q5 = z_at_q4 - k.d4 * sin_q23
         z_minus_z_at_q5 = z - z_at_q5
-        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
         y_minus_y_at_q5 = y - y_at_q5
         rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        sum_in_rate_1_6 = y_minus_y_at_q5 - k.j6_offset_x * r21_at_q5
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        sum_in_rate_1_6_2 = z_minus_z_at_q5 - k.j6_offset_x * r31_at_q5
-        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * sum_in_rate_1_6_2 - r33_at_q5 * sum_in_rate_1_6)
-        rate_2_1 = k.one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
         x_at_q2 = k.a1 * cos_q1
         r13_at_q2 = cos_q1 * sin_q2
         x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
         x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        rate_2_1 = k.one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
         x_minus_x_at_q4 = x - x_at_q4
         rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
         x_minus_x_at_q5 = x - x_at_q5
         rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        sum_in_rate_2_6 = x_minus_x_at_q5 - k.j6_offset_x * r11_at_q5
-        rate_2_6 = (r33_at_q5 * sum_in_rate_2_6 - r13_at_q5 * sum_in_rate_1_6_2) * k.one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
         rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
         rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
         rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
         rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * sum_in_rate_1_6 - r23_at_q5 * sum_in_rate_2_6)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         # determinant of the Jacobian, positions in characteristic lengths
         (determinant,) = solve(
             (
@@ -1500,9 +1506,6 @@ class ArrayPrograms(Programs):
             wave_sin_6,
             wave_sin_7,
             wave_sin_8,
-            _,
-            _,
-            _,
         ) = given
         sum_in_way_ends = 360.0 * DEGREE - 1e-7
         # one step of the search
