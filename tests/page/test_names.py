@@ -14,7 +14,7 @@ from derive.description.validate import validate
 from derive.emit.page.names import has_block, spelling_of
 from derive.emit.page.page import page_of
 from derive.emit.python.entries import module_name
-from derive.ir.program import FindRoot, Program, Solve, shared
+from derive.ir.program import Solve, shared
 from derive.kinematics.kinematics import Kinematics
 from derive.pipeline import languages
 from tests.machines.collection import MACHINES
@@ -92,7 +92,7 @@ def _confirm_programs(name: str) -> None:
     # A value that is a result itself has the name of the result in the block: `v.dZ := a.a2 - axes[2].offset`.
     results = (*kinematics.forward.outputs, *kinematics.singularity.outputs)
     known |= {spell(n) for o in results for n in (o.name, str(o.value)) if n.isidentifier()}
-    shared_by_methods = [f"shared-{p.name}" for p in kinematics.shared if _is_written(p)]
+    shared_by_methods = [f"shared-{p.name}" for p in kinematics.shared]
     bound = set(_bound(text, ("inverse-program", "forward-program", "singularities", "jacobian", *shared_by_methods)))
     own = {one for one in bound - known if not re.fullmatch(r"J\d+", one)}
     assert own <= words | {one for one, _ in spell.places}
@@ -108,11 +108,6 @@ def _bound(text: str, anchors: tuple[str, ...]) -> Iterator[str]:
     for anchor in anchors:
         if anchor in headings:
             yield from names_of(li for program in every(section(tree, anchor), "ol", "program") for li in program)
-
-
-def _is_written(program: Program) -> bool:
-    """Whether the block has a method with its statements: a search for roots is written in the block by itself."""
-    return not any(isinstance(s, FindRoot) for s in program.body)
 
 
 def _of_loops(kinematics: Kinematics) -> Iterator[str]:

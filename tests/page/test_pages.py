@@ -9,7 +9,7 @@ import pytest
 
 from derive.emit.page.names import Spelling
 from derive.ir.interpret import run as interpreted
-from derive.ir.program import Call, FindRoot, Iterate, Program, Require, Solve, Status
+from derive.ir.program import Call, Iterate, Program, Require, Solve, Status
 from derive.ir.symbols import Flag
 from derive.kinematics.branches.assembly import with_derived_assembly
 from derive.kinematics.inverse import solve_pose
@@ -134,7 +134,7 @@ def _is_of_forward(element: object, shown: list) -> bool:  # type: ignore[type-a
 
 def _is_straight(program: Program) -> bool:
     """Whether a page has all of it in formulas: no loop, no call, no unknowns of linear equations."""
-    loops = (Iterate, Call, FindRoot)
+    loops = (Iterate, Call)
     return not any(isinstance(s, loops) or (isinstance(s, Solve) and s.right) for s in program.body)
 
 

@@ -32,7 +32,7 @@ from derive.kinematics.scan.search import ONWARD
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"
-MOST_AXES, MOST_BRANCHES = 24, 12
+MOST_AXES, MOST_BRANCHES, MOST_GIVEN = 24, 12, 96
 bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
@@ -83,7 +83,7 @@ def module_name(mechanism: str) -> str:
 
 def _fits(kin: Kinematics) -> bool:
     given = () if kin.search_given is None else kin.search_given.outputs
-    sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
+    sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), MOST_GIVEN)]
     return all(size <= most for size, most in sizes)
 
 
@@ -100,6 +100,7 @@ def _templates() -> Environment:
         "no_meaning": NO_MEANING,
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
+        "most_given": MOST_GIVEN,
         "most_together": MOST_SLOTS,
     }
     return templates

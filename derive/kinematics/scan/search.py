@@ -61,7 +61,7 @@ _STAGE, _PLACE, _WIDTH = count("stage"), real("place"), real("width")
 _NUMBER, _SHORTEST, _ASIDE = count("number_of_start"), real("shortest"), real("aside")
 _BEFORE, _LEFT, _MIRRORED = real("error_before"), count("steps_left"), flag("was_mirrored")
 _NEAREST, _PASSES_LEFT = real("nearest"), count("passes_left")
-_FIRST, _LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
+FIRST, LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
 """The width of a part to begin with, and of one that is not widened further: it is followed by another."""
 _NEAR = sp.Float("1e-3")
 """The closure is met only from where the residual of the branch is at most this."""
@@ -146,7 +146,7 @@ def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Cal
     given = {AHEAD_BY: _PLACE + _WIDTH, DIRECTION: DIRECTION}
     yield _call(look, (*arguments, START), given, _is_at(_LOOKING))
     is_part = sp.Gt(_WIDTH, 0)
-    ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, _LONGEST))
+    ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, LONGEST))
     yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
     # what is further away than the nearest root need not be looked at
     away = Select(sp.Lt(_NEAREST, sp.pi), _NEAREST + 2 * AHEAD, sp.pi)
@@ -240,7 +240,7 @@ def _ends() -> Iterator[Let]:
 def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
     """The state in the next pass."""
     looks, passes_by = _is_at(_LOOKING), sp.Gt(_WIDTH, 0)
-    wider = Select(passes_by, 2 * _WIDTH, Select(IS_ROUNDING, _FIRST, _ZERO))
+    wider = Select(passes_by, 2 * _WIDTH, Select(IS_ROUNDING, FIRST, _ZERO))
     width = Select(flag("part_is_done"), _ZERO, Select(sp.And(looks, sp.Not(flag("part_ends"))), wider, _WIDTH))
     steps = sp.And(looks, sp.Not(passes_by), sp.Not(IS_ROUNDING))
     place = Select(flag("part_is_done"), _PLACE + _WIDTH, Select(steps, _PLACE + SAFE, _PLACE))

@@ -10,8 +10,8 @@ import sympy as sp
 from derive.description.mechanism import Mechanism, Role
 from derive.equations.choices import input_of, with_choices
 from derive.ir.primitives import Select
-from derive.ir.program import FindRoot, Iterate, Let, Program, Statement
-from derive.ir.symbols import PLACE, Flag, flag, is_condition, is_count, real
+from derive.ir.program import Iterate, Let, Program, Statement
+from derive.ir.symbols import Flag, flag, is_condition, is_count, real
 from derive.kinematics.kinematics import Kinematics
 from tests.mechanisms import kinematics_of, named
 
@@ -63,18 +63,14 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
 
 @pytest.mark.long
 def test_a_search_and_its_loop_count_and_ask() -> None:
-    """The flags and counts of the root scan are Booleans and integers."""
+    """The flags and counts of the search for a root are Booleans and integers."""
     kin = kinematics_of(named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset"))
-    (search,) = (s for _, s in _all(kin) if isinstance(s, FindRoot))
-    assert (
-        isinstance(search.wanted, Flag)
-        and isinstance(search.names[0], Flag)
-        and is_condition(search.finish.outputs[0].value)
-    )
-    assert [is_count(s) for s in PLACE] == [False, True, True, False]
-    assert all(is_count(s) for s in search.trial.inputs if s.name.startswith("wanted_"))
-    (loop,) = (s for s in search.finish.body if isinstance(s, Iterate))
-    assert [s.name for s in loop.state if is_count(s)] == ["passes"]
+    (search,) = (p for p in kin.shared if p.name == "find_root")
+    assert is_condition(search.outputs[0].value)
+    assert all(is_count(s) for s in search.inputs if s.name.startswith("wanted_"))
+    (loop,) = (s for s in search.body if isinstance(s, Iterate))
+    assert {"stage", "direction", "side", "trials", "passes_left"} <= {s.name for s in loop.state if is_count(s)}
+    assert [s.name for s in loop.state if isinstance(s, Flag)] == ["was_mirrored"]
 
 
 X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_xy"))

@@ -15,7 +15,7 @@ from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Select
-from derive.ir.program import Call, FindRoot, Iterate, Let, Output, Program, Require, Solve, Status
+from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Status
 from derive.ir.symbols import flag, real
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.sampling import machine_at, sample_axes
@@ -27,7 +27,7 @@ X, Y, LENGTH, ANGLE, AXIS, HIGH = (real(name) for name in ("x", "y", "length", "
 Array = NDArray[np.float64]
 POSES = 200
 CLOSE = 1e-9
-NEWTON_OR_SOLVE = (Solve, Iterate, Call, FindRoot)
+NEWTON_OR_SOLVE = (Solve, Iterate, Call)
 
 
 def seen(program: Program) -> Program:
