@@ -1390,8 +1390,8 @@ static softkin_status find_root(const void *machine, const double *given, double
     best_now_minus_way_now = best_now - way_now;
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
-    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 24) || (fabs(at - newton_place) <= 0.0));
-    is_near = is_settled && ((width > 1e-9)
+    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 8) || (fabs(at - newton_place) <= 1e-10));
+    is_near = is_settled && ((width > 1e-6)
         || ((least_now <= 0.001) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {

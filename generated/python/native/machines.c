@@ -151,7 +151,7 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset d2235f4c9a79a6dc", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_rzryryrxryrz_j6offset 476710dd8035783c", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
     {"ac6_threeparallel a721580085cf1d29", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,

@@ -75,7 +75,7 @@ double softkin_solve(double *system, int rows, int columns) {
     for (int i = k + 1; i < rows; i += 1) {
       best = fabs(system[i*width + k]) > fabs(system[best*width + k]) ? i : best;
     }
-    if (!(fabs(system[best*width + k]) > PIVOT*largest)) {
+    if (!(fabs(system[best*width + k]) > SOFTKIN_PIVOT*largest)) {
       is_solvable = false;
       break;
     }
@@ -539,7 +539,7 @@ static softkin_status all_roots(sorting *in, softkin_refusal *why) {
   in->others->count = 0;
   for (int scan = 0; scan < 1 << in->kind->side_count; scan += 1) {
     int8_t signs[SOFTKIN_MOST_BRANCHES] = {0};
-    double given[2*SOFTKIN_MOST_AXES];
+    double given[SOFTKIN_MOST_GIVEN];
     for (int i = 0; i < in->kind->side_count; i += 1) {
       signs[i] = (scan >> i & 1) == 0 ? 1 : -1;
     }
@@ -716,7 +716,7 @@ static void put(root *found, int count, const root *one) {
 
 /* All roots, found onward from an angle. */
 static int roots_from(const softkin_roots *of, double begin, root *found) {
-  double given[2*SOFTKIN_MOST_AXES], results[SOFTKIN_MOST_AXES + 2], left = 2.0*PI - SOFTKIN_AHEAD;
+  double given[SOFTKIN_MOST_GIVEN], results[SOFTKIN_MOST_AXES + 2], left = 2.0*PI - SOFTKIN_AHEAD;
   int count = 0;
   for (int i = 0; i < of->count; i += 1) {
     given[i] = of->given[i];

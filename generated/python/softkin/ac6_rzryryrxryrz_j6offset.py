@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset d2235f4c9a79a6dc"
+    KEY = "ac6_rzryryrxryrz_j6offset 476710dd8035783c"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1830,9 +1830,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if best_now_minus_way_now < place
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
-            is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 24) or (abs(at - newton_place) <= 0.0))
+            is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 8) or (abs(at - newton_place) <= 1e-10))
             is_near = is_settled and (
-                (width > 1e-9) or ((least_now <= 0.001) and ((room_of_trial <= 1e-6) or (side > 0)))
+                (width > 1e-6) or ((least_now <= 0.001) and ((room_of_trial <= 1e-6) or (side > 0)))
             )
             if is_near:
                 found = self._joints_at(

@@ -1664,8 +1664,8 @@ class ArrayPrograms(Programs):
                 place,
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
-            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 24) | (absolute(at - newton_place) <= 0.0))
-            is_near = is_settled & ((width > 1e-9) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
+            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 8) | (absolute(at - newton_place) <= 1e-10))
+            is_near = is_settled & ((width > 1e-6) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
             found = run_where(
                 is_near,
                 self.joints_at,
