@@ -111,7 +111,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         otherwise=None,
         note="one step of the search",
     )
-    found = {j: _kept(j) for j in joints} | {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    found = {j: _kept_now(j) for j in joints} | {j.symbol: reference_value(j) for j in mechanism.held_joints}
     nearest = real("nearest_now")
     outputs = [
         Output(FOUND.name, sp.Lt(nearest, _FAR)),
@@ -124,6 +124,10 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
 
 def _kept(joint: sp.Symbol) -> sp.Symbol:
     return real(f"kept_{joint.name}")
+
+
+def _kept_now(joint: sp.Symbol) -> sp.Symbol:
+    return real(f"kept_now_{joint.name}")
 
 
 def _call(
@@ -191,13 +195,14 @@ def _met(
     yield Let(flag("meets_pose"), sp.And(flag("steps_end"), sp.Le(ERROR, CONVERGED)))
     yield _call(steps.fits, arguments, here, flag("meets_pose"))
     ahead = searched - START - AHEAD
-    yield Let(real("distance"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
-    within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("distance"), AHEAD), sp.Lt(real("distance"), _TURN - AHEAD)))
+    yield Let(real("distance_ahead"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
+    within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("distance_ahead"), AHEAD), sp.Lt(real("distance_ahead"), _TURN - AHEAD)))
     fits = sp.And(flag("meets_pose"), flag(FITS))
-    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance"), _NEAREST)))
-    yield Let(real("nearest_now"), Select(flag("is_better"), real("distance"), _NEAREST))
+    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance_ahead"), _NEAREST)))
+    yield Let(real("nearest_now"), Select(flag("is_better"), real("distance_ahead"), _NEAREST))
     yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
     has_moved = sp.Gt(real("moved"), _MOVED)
+    yield from (Let(_kept_now(j), Select(flag("is_better"), j, _kept(j))) for j in joints)
     yield Let(flag("mirrors"), sp.And(flag("meets_pose"), sp.Not(flag(FITS)), sp.Not(_MIRRORED), has_moved))
 
 
@@ -268,7 +273,7 @@ def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
         mirrored = 2 * _begun(j) - j
         found[j] = Select(flag("is_near"), begun(j), Select(flag("mirrors"), mirrored, moved_to(j)))
         found[_begun(j)] = Select(flag("is_near"), begun(j), _begun(j))
-        found[_kept(j)] = Select(flag("is_better"), j, _kept(j))
+        found[_kept(j)] = _kept_now(j)
     return found
 
 

@@ -65,6 +65,7 @@ def find_root() -> Program:
         done=sp.Le(sp.Abs(CHANGE), CLOSE * GUESS),
         limit=60,
         otherwise=Status.IMPOSSIBLE,
+        note="Heron's method",
         reason=NONE,
     )
     positive = Require(sp.Gt(RADICAND, 0), Status.BAD_INPUT, reason=NONE)
@@ -85,6 +86,7 @@ def find_mean(passes: int | None = None) -> Program:
         done=agree,
         limit=12,
         otherwise=Status.UNREACHABLE,
+        note="both means",
         reason=NONE,
     )
     return normalise("find_mean", (loop,), [Output("mean", MEAN), Output("taken", ToReal(PASSES))])
@@ -95,7 +97,7 @@ def settle() -> Program:
     given = ((FIRST, LEVEL), (SECOND, END))
     call = Call(find_mean(), given, (MEAN, TAKEN), refusal=(Status.INVALID_COUPLING, NONE))
     done = sp.Le(sp.Abs(MEAN - LEVEL), sp.Float("1e-9") * END)
-    loop = Iterate((LEVEL, SUM), (BEGIN, sp.Integer(0)), (call,), (MEAN, SUM + TAKEN), done, 60, None)
+    loop = Iterate((LEVEL, SUM), (BEGIN, sp.Integer(0)), (call,), (MEAN, SUM + TAKEN), done, 60, None, "levels")
     return normalise("settle", (loop,), [Output("level", MEAN), Output("sum", SUM + TAKEN)])
 
 
