@@ -53,7 +53,7 @@ The next root ahead is further away than this.
 """
 ELSEWHERE = sp.Float("2.5")
 """All roots are found onward from so far ahead of the reference, which may be a root."""
-MOST_PASSES = 2000
+MOST_PASSES = 6000
 """The passes of the search, at most."""
 _LOOKING, _SHORTENING, _SETTLING, _MEETING = map(sp.Integer, range(4))
 """What the search is at: it looks for a part, for where a length is shortest, for a joint value, for the closure."""
