@@ -71,6 +71,8 @@ class Search:
     joint: Joint
     where: Parameter | None = None
     """The parameter without which the closure has a closed form; None if it has none for any machine."""
+    is_eliminated: bool = False
+    """Whether the other joints follow from the searched one by elimination, not step by step."""
 
 
 class Turning(Enum):

@@ -96,6 +96,14 @@ def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
     return Inverse(closure, replace(derivation, statements=statements), naming, moving, held, checks)
 
 
+def without_steps(mechanism: Mechanism, known: Joint) -> Inverse:
+    """A trial with one joint known that solves nothing: the others are found otherwise."""
+    moving = tuple(j for j in mechanism.solved_joints if j != known)
+    kept = tuple(s for j in mechanism.held_joints for s in frozen_lets(j))
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept)
+    return Inverse(Closure((), ()), Derivation((), (), (), ()), naming, moving, mechanism.held_joints)
+
+
 def solve_offset(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded point; joints that a position does not determine are frozen."""
     frozen = _frozen_joints(mechanism)

@@ -26,8 +26,8 @@ from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_pose
 from derive.kinematics.margins import Factor, factor_of
-from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import Scanned, solve_both
+from derive.kinematics.scan.choice import solve_searched, with_search
+from derive.kinematics.scan.derivations import Scanned
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
@@ -89,9 +89,9 @@ def solve_machine(mechanism: Mechanism) -> Solution:
     if mechanism.is_platform:
         check_home(mechanism)
     refuse_names_of_joints(mechanism)
-    mechanism = with_search(mechanism)
+    stated, mechanism = mechanism, with_search(mechanism)
     if mechanism.search is not None:
-        return solve_both(mechanism)
+        return solve_searched(stated, mechanism)
     mechanism = with_derived_assembly(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     inverse = solve_pose(mechanism)

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.description.mechanism import Joint, Mechanism
+from derive.description.mechanism import Joint, Mechanism, Search
 from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import COORDINATE_NAMES, branch_sign
@@ -18,6 +18,7 @@ from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, 
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home
+from derive.witness.onward import every_root
 from derive.witness.planted import refused_when_planted
 from derive.witness.roots import STARTS, Problem, all_solutions, distinct, is_solution, polished, problem_at, same
 from derive.witness.samples import SEED, Samples, describe, turns_of
@@ -74,7 +75,7 @@ def check_solutions(
     rows = np.arange(0, len(samples), _EVERY) if search else _first_and_richest(samples, answers[1].sum(axis=0))
     part = samples.take(rows)
     problem = problem_at(closure, part)
-    axes, ok = _around(kin, part, search.joint) if search else (answers[0][:, rows], answers[1][:, rows])
+    axes, ok = _searched(kin, part, search) if search else (answers[0][:, rows], answers[1][:, rows])
     offered = [polished(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
     held = [np.stack(offered)[ok[:, row], row] for row in range(len(part))]
@@ -153,6 +154,15 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
     return axes.reshape(len(slots), count, -1), ok.reshape(len(slots), count)
 
 
+def _searched(kin: Kinematics, samples: Samples, search: Search) -> Slots:
+    """The solutions that a search offers. Where the side alone tells roots apart, many have the same: one after the
+    other is asked for.
+    """
+    if search.is_eliminated:
+        return every_root(kin, samples, _commands(kin, samples))
+    return _around(kin, samples, search.joint)
+
+
 def _around(kin: Kinematics, samples: Samples, searched: Joint) -> Slots:
     """The solutions of every slot with a root scan, from references around the circle: a branch may have several."""
     commands = _commands(kin, samples)
@@ -175,12 +185,15 @@ def _commands(kin: Kinematics, samples: Samples) -> dict[str, Array]:
     """Turns and references that lead to the sampled axes: explicit turns on even rows, near references on odd ones."""
     rng = np.random.default_rng(SEED + 2)
     explicit = np.arange(len(samples)) % 2 == 0
-    searched = kin.mechanism.search.joint if kin.mechanism.search is not None else None
+    search = kin.mechanism.search
+    searched = search.joint if search is not None else None
     commands = {}
     for i, joint in enumerate(kin.mechanism.joints):
         axis = samples.axes[:, i]
         turns = turns_of(joint, samples.values) if joint.is_angle else 1.0
         near = axis + rng.uniform(-_NEAR, _NEAR, len(samples)) / turns
+        if search is not None and search.is_eliminated and joint == searched:
+            near = axis  # another root of the same side may be near
         anywhere = rng.uniform(-720.0, 720.0, len(samples)) / turns
         held = joint in kin.mechanism.held_joints
         far = explicit & joint.multi_turn & (joint != searched)  # the reference tells roots of one branch apart

@@ -183,8 +183,33 @@ def _assignment(let: Let, value: sp.Expr, printer: StructuredText) -> str:
     return f"{printer.name(let.name)} := {printer.value(let.name, value)};"
 
 
-_MATRIX, _RIGHT, _PASS, _CONVERGED = "coefficients", "unknowns", "iteration", "converged"
-LOCALS = (_MATRIX, _RIGHT, _PASS, _CONVERGED)
+_PASS, _CONVERGED = "iteration", "converged"
+
+
+@dataclass(frozen=True)
+class _Arrays:
+    """A function that solves linear equations, the arrays that it is given, and what they hold at most."""
+
+    function: str
+    matrix: str
+    right: str
+    rows: int
+    columns: int
+
+    @property
+    def declarations(self) -> tuple[str, ...]:
+        """The variables."""
+        return (
+            f"{self.matrix} : ARRAY[1..{self.rows}, 1..{self.rows}] OF LREAL;",
+            f"{self.right} : ARRAY[1..{self.rows}, 1..{self.columns}] OF LREAL;",
+        )
+
+
+_SOLVERS = (
+    _Arrays("Softkin_Solve", "coefficients", "unknowns", 6, 6),
+    _Arrays("Softkin_SolveMany", "manyCoefficients", "manyUnknowns", 18, 10),
+)
+LOCALS = (*(name for s in _SOLVERS for name in (s.matrix, s.right)), _PASS, _CONVERGED)
 """The names that no temporary variable may have."""
 
 
@@ -192,29 +217,39 @@ def declarations(body: Iterable[Statement]) -> tuple[str, ...]:
     """The variables that systems and loops need besides the temporary variables of the program."""
     loops = [s for s in body if isinstance(s, Iterate)]
     systems = [s for s in body if isinstance(s, Solve)] + [i for s in loops for i in s.step if isinstance(i, Solve)]
-    found = tuple(f"{name} : ARRAY[1..6, 1..6] OF LREAL;" for name in (_MATRIX, _RIGHT)) if systems else ()
+    solvers = {_solver(s) for s in systems}
+    found = tuple(line for s in _SOLVERS if s in solvers for line in s.declarations)
     passes = (f"{_PASS} : INT;",) if loops else ()
     return (*found, *passes, *((f"{_CONVERGED} : BOOL;",) if any(s.otherwise is not None for s in loops) else ()))
 
 
 def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
     """The lines that fill the matrix and the right-hand sides, solve, and read the solution from the same arrays."""
-    if system.size > 6 or system.columns > 6:
-        raise ValueError("Softkin_Solve knows at most six unknowns and six right-hand sides")
-    yield from _filled(_MATRIX, system.matrix, system.size, printer)
-    yield from _filled(_RIGHT, system.right, system.columns, printer)
+    solver = _solver(system)
+    yield from _filled(solver.matrix, system.matrix, system.size, printer)
+    yield from _filled(solver.right, system.right, system.columns, printer)
     target = "" if system.determinant is None else f"{printer.name(system.determinant)} := "
-    given = f"aMatrix := {_MATRIX}, aRight := {_RIGHT}, iSize := {system.size}, iColumns := {system.columns}"
-    yield from wrapped(f"{target}Softkin_Solve({given});")
+    arrays = f"aMatrix := {solver.matrix}, aRight := {solver.right}"
+    given = f"{arrays}, iSize := {system.size}, iColumns := {system.columns}"
+    yield from wrapped(f"{target}{solver.function}({given});")
     for name, element in elements(system).items():
         if printer.names[name] != element:
             yield f"{printer.names[name]} := {element};"
 
 
+def _solver(system: Solve) -> _Arrays:
+    """The function that solves a system: the smallest that has room for it."""
+    for solver in _SOLVERS:
+        if system.size <= solver.rows and system.columns <= solver.columns:
+            return solver
+    most = _SOLVERS[-1]
+    raise ValueError(f"{most.function} knows at most {most.rows} unknowns and {most.columns} right-hand sides")
+
+
 def elements(system: Solve) -> dict[str, str]:
     """The array elements that hold the solution, by the names of the unknowns."""
     return {
-        n.name: f"{_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)
+        n.name: f"{_solver(system).right}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)
     }
 
 

@@ -24,12 +24,17 @@ from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.refusals.neighbours import fitting_task, what_misses
+from derive.kinematics.scan.derivations import Scanned, solve_both
+from derive.kinematics.scan.elimination.order import elimination_of
 from derive.kinematics.scan.guards import guards_of
+from derive.kinematics.scan.wave import wave_program
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Undetermined, Unsolved, with_advice
 from derive.work import TooMuchWork, at_most
 
+MOST_SOLUTIONS = 16
+"""An arm with six joints has no more solutions for a pose."""
 _MOST_TERMS = 4 * MOST_TERMS
 """The work of the trials along all joints."""
 
@@ -59,12 +64,55 @@ def with_search(mechanism: Mechanism) -> Mechanism:
         raise
     except Unsolved as problem:
         found = _best(mechanism) if _may_be_searched(mechanism) else None
+        if found is None and (by_elimination := _eliminated(mechanism)) is not None:
+            return by_elimination
         if found is None:
             refusal = type(problem)(with_advice(str(problem), _advice(mechanism)))
             refusal.steps = problem.steps
             raise refusal from None
         return _searched(mechanism, found)
     return mechanism
+
+
+def solve_searched(stated: Mechanism, mechanism: Mechanism) -> Scanned:
+    """A machine solved with its search. Where the residual of the steps is no wave, the joints are eliminated.
+
+    stated: the machine before a search was chosen.
+    """
+    both = solve_both(mechanism)
+    try:
+        wave_program(both)
+    except Unsolved:
+        other = _eliminated(stated) if stated.search is None else None
+        if other is None:
+            raise
+        both = solve_both(other)
+    return both
+
+
+def _eliminated(mechanism: Mechanism) -> Mechanism | None:
+    """The mechanism with a search whose other joints are eliminated; None where that is impossible."""
+    found = elimination_of(mechanism, pose_at_axes(mechanism))
+    if found is None:
+        return None
+    chosen = _with_crossing(mechanism, Search(found.searched, is_eliminated=True))
+    (last,) = (b for b in chosen.branches if b.is_crossing)
+    joint, most = found.searched.name, min(2 * found.degree, MOST_SOLUTIONS)
+    note = (
+        f"No closed form is known. With {joint} known the other joints follow from linear equations, whose determinant "
+        f"vanishes where the arm closes. The inverse looks for these values of {joint}, all around the circle; there "
+        f"are at most {most} solutions. The byte {last.name} is the sign of the determinant of the Jacobian; of the "
+        f"solutions of one branch the answer is the one whose {joint} is nearest to the reference."
+    )
+    return replace(chosen, notes=(*mechanism.notes, note))
+
+
+def _with_crossing(mechanism: Mechanism, search: Search) -> Mechanism:
+    """The mechanism with its search; its last branch tells the roots apart."""
+    own = tuple(b for b in mechanism.branches if b.is_crossing)
+    others = tuple(b for b in mechanism.branches if not b.is_crossing)
+    last = own or (crossing("crossing", rising=+1, falling=-1),)
+    return replace(mechanism, branches=(*others, *last), search=search)
 
 
 def _best(mechanism: Mechanism) -> _Candidate | None:
@@ -114,11 +162,7 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     """The mechanism with its search; its last branch is the sign of the slope at a root."""
     forward, trial = pose_at_axes(mechanism), found.trial
     refuse_shared_names(mechanism, (*forward.statements, *trial.naming, *trial.derivation.statements))
-    own = tuple(b for b in mechanism.branches if b.is_crossing)
-    others = tuple(b for b in mechanism.branches if not b.is_crossing)
-    last = own or (crossing("crossing", rising=+1, falling=-1),)
-    chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
-    named = with_named_steps(chosen, trial, forward)
+    named = with_named_steps(_with_crossing(mechanism, Search(found.joint)), trial, forward)
     noted = replace(named, notes=(*mechanism.notes, _note(named, found)))
     lets = fixed_lets(mechanism)
     checks = tuple(check.constraint(lets) for check in dict.fromkeys(trial.checks))

@@ -22,7 +22,9 @@ from derive.ir.program import Let, Output, Program, Require, Statement, rewritte
 from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, flag, real, sine
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import pose_at_axes
-from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose
+from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose, without_steps
+from derive.kinematics.scan.elimination.equations import Equations, equations_of
+from derive.kinematics.scan.elimination.order import Elimination, elimination_of
 from derive.kinematics.scan.guards import conditions_of, guards_of, least, room_of
 from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
@@ -44,6 +46,8 @@ class Scanned:
     trial_branches: tuple[Assignment, ...]
     asked: tuple[Branch, ...]
     """The branches that no step of a trial decides."""
+    elimination: tuple[Elimination, Equations] | None = None
+    """How the other joints follow from the searched one, where no steps solve them; `trial` has none then."""
 
 
 @stage("the root scan")
@@ -51,6 +55,8 @@ def solve_both(mechanism: Mechanism) -> Scanned:
     """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None
     forward = pose_at_axes(mechanism)
+    if mechanism.search.is_eliminated:
+        return _by_elimination(mechanism, forward)
     closed, closed_branches = _in_closed_form(mechanism)
     trial = solve_at(mechanism, mechanism.search.joint)
     if (left := len(trial.derivation.residuals)) != 1:
@@ -62,6 +68,18 @@ def solve_both(mechanism: Mechanism) -> Scanned:
     found, asked, unnamed = steps_and_rest(mechanism, trial, forward)
     refuse_unnamed(unnamed)
     return Scanned(mechanism, forward, closed, closed_branches, trial, found, asked)
+
+
+def _by_elimination(mechanism: Mechanism, forward: Forward) -> Scanned:
+    """A trial without steps, and the elimination that takes their place."""
+    assert mechanism.search is not None
+    elimination = elimination_of(mechanism, forward, mechanism.search.joint)
+    if elimination is None:
+        raise DescriptionError(f"with {mechanism.search.joint.name} known, the other joints are not eliminated")
+    trial = without_steps(mechanism, mechanism.search.joint)
+    _, asked, _ = steps_and_rest(mechanism, trial, forward)
+    equations = equations_of(mechanism, elimination)
+    return Scanned(mechanism, forward, None, (), trial, (), asked, (elimination, equations))
 
 
 def _in_closed_form(mechanism: Mechanism) -> tuple[Inverse | None, tuple[Assignment, ...]]:

@@ -28,6 +28,7 @@ from derive.kinematics.scan.derivations import (
     trial_on_branch,
     wanted,
 )
+from derive.kinematics.scan.elimination.vanishing import trial_programs
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
 from derive.kinematics.scan.parts import look_program
 from derive.kinematics.scan.programs import (
@@ -104,11 +105,15 @@ def search_of(both: Scanned) -> Program:
     mechanism = both.mechanism
     assert mechanism.search is not None
     wave, degree = wave_program(both)
-    trial = trial_on_branch(both)
+    if both.elimination is not None:
+        tries, joints = trial_programs(mechanism, *both.elimination)
+    else:
+        trial = trial_on_branch(both)
+        tries, joints = try_program(trial), joints_program(mechanism, trial)
     steps = Steps(
         look=look_program(degree),
-        trial=try_program(trial),
-        joints_at=joints_program(mechanism, trial),
+        trial=tries,
+        joints_at=joints,
         step=step_program(mechanism),
         fits=fits_program(mechanism, margins_wanted(both), DETERMINANT),
     )

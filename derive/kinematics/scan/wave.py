@@ -16,17 +16,17 @@ from itertools import product
 import numpy as np
 import sympy as sp
 
-from derive.equations.axes import reference_value
-from derive.ir.interpret import Array, evaluate, run
+from derive.ir.interpret import Array, evaluate
 from derive.ir.passes import normalise
 from derive.ir.primitives import ToReal, larger
-from derive.ir.program import Iterate, Let, Output, Program, Statement
-from derive.ir.symbols import TRIED, count, real
+from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement
+from derive.ir.symbols import TRIED, cosine, count, real, sine
 from derive.kept import kept_by_identity
-from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.scan.derivations import Scanned, trial_of_all_signs
+from derive.kinematics.scan.elimination.matrix import call_of, determinant_of
 from derive.kinematics.scan.product import Product, product_of
-from derive.kinematics.scan.programs import GOAL, LOOKED_FOR
+from derive.kinematics.scan.programs import LOOKED_FOR
+from derive.kinematics.scan.samples import MACHINES, samples_of
 from derive.solver.unsolved import Unsolved
 from derive.work import stage
 
@@ -38,7 +38,7 @@ _BEYOND = 2
 """The number of waves beyond the degree."""
 _MORE, _ROUNDING = 1000, sp.Float("1e-14")
 """The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
-_MACHINES, _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 6, 96, 4, 16, 1e-10
+_ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 96, 4, 16, 1e-10
 
 
 def names_of(degree: int) -> list[sp.Symbol]:
@@ -60,18 +60,16 @@ def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[
 @stage("the wave of a root search")
 def wave_program(both: Scanned) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
-    samples, trial = _samples(both), trial_of_all_signs(both)
-    found = product_of(trial.statements, trial.value, samples)
-    value, degree = _cleared(found, samples)
+    before, sampled, value, degree = _determinant(both) if both.elimination else _product(both)
     most = degree + _BEYOND
     points = 2 * most + 1
     number, names = count("sample"), names_of(most)
     lets, c, s = turned(most, TRIED)
     share = sp.Float(2.0 / points)
     parts = [real("level") * c[0], *(real("taken") * f for f in (*c[1:], *s[1:]))]
-    step: list[Statement] = [
+    step: list[Let | Solve] = [
         Let(TRIED, BEGIN + ToReal(number) * sp.Float(2.0 * np.pi / points)),
-        *found.statements,
+        *sampled,
         *lets,
         Let(real("taken"), share * value),
         Let(real("level"), real("taken") / 2),
@@ -80,7 +78,7 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     loop = Iterate(
         state=(number, *names),
         start=(sp.Integer(0),) * (1 + len(names)),
-        step=tuple(s for s in step if isinstance(s, Let)),
+        step=tuple(step),
         following=(number + 1, *(n + p for n, p in zip(names, parts, strict=True))),
         done=sp.Or(sp.Not(LOOKED_FOR), is_last) if both.closed is not None else is_last,
         limit=points + 1,
@@ -91,10 +89,37 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     beyond = [n for n in names if n not in own]
     fifth = Let(FIFTH, sp.Add(*[_fifth(k, degree) * sp.Abs(n) for k, n in enumerate(own) if k]))
     outputs = [Output(n.name, n) for n in (*own, NOISE, FIFTH)]
-    program = normalise("compute_wave", (loop, *_noise(own, beyond), fifth), outputs)
+    program = normalise("compute_wave", (*before, loop, *_noise(own, beyond), fifth), outputs)
     return replace(
         program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
     ), degree
+
+
+_Sampled = tuple[tuple[Statement, ...], Sequence[Let | Solve], sp.Expr, int]
+"""Statements that are run once; those that compute the wave at an angle; its value, and its degree."""
+
+
+def _product(both: Scanned) -> _Sampled:
+    """The residuals of all branches, multiplied."""
+    samples, trial = _around(both), trial_of_all_signs(both)
+    found = product_of(trial.statements, trial.value, samples)
+    value, degree = _cleared(found, samples)
+    return (), found.statements, value, degree
+
+
+def _determinant(both: Scanned) -> _Sampled:
+    """The determinant of the equations that an elimination leaves."""
+    assert both.elimination is not None
+    elimination, equations = both.elimination
+    own = Let(cosine(elimination.searched.symbol), sp.cos(TRIED)), Let(sine(elimination.searched.symbol), sp.sin(TRIED))
+    statements, value = determinant_of(elimination, equations)
+    return (call_of(equations),), (*own, *statements), value, elimination.degree
+
+
+def _around(both: Scanned) -> dict[str, Array]:
+    """Poses of some machines, a row for each, and the joint all around the circle."""
+    found = {n: values[:, None] for n, values in samples_of(both.mechanism, both.forward).items()}
+    return found | {TRIED.name: 0.1 + 2.0 * np.pi * np.arange(_ANGLES)[None, :] / _ANGLES}
 
 
 def _fifth(place: int, degree: int) -> sp.Expr:
@@ -112,29 +137,12 @@ def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Le
     yield Let(NOISE, largest)
 
 
-def _samples(both: Scanned) -> dict[str, Array]:
-    """Poses of some machines, a row for each, and the joint all around the circle."""
-    mechanism = both.mechanism
-    outputs = [Output(n.name, n) for n in (*map(real, "xyz"), *both.forward.rotation)]
-    program = normalise("pose", both.forward.statements, outputs)
-    rows: list[dict[str, Array]] = []
-    for seed in range(61, 61 + _MACHINES):
-        machine = sample_machine(mechanism, seed)
-        axes = sample_axes(mechanism, machine, 1, seed)
-        pose, _ = run(program, {**machine, **axes})
-        goal = {GOAL[real(n)].name: v for n, v in pose.items() if real(n) in GOAL}
-        held = {reference_value(j).name: np.radians(axes[j.axis.name]) for j in mechanism.joints}
-        rows.append({**machine, **axes, **held, **goal})
-    found = {n: np.array([np.ravel(row[n])[:1] for row in rows], dtype=float) for n in rows[0]}
-    return found | {TRIED.name: 0.1 + 2.0 * np.pi * np.arange(_ANGLES)[None, :] / _ANGLES}
-
-
 def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
     """The product times the powers of its divisors that make its degree lowest, and this degree."""
     known = dict(samples)
     for let in found.statements:
         known[let.name.name] = np.asarray(evaluate(let.value, known))
-    value = np.broadcast_to(evaluate(found.value, known), (_MACHINES, _ANGLES))
+    value = np.broadcast_to(evaluate(found.value, known), (MACHINES, _ANGLES))
     divisors = [np.broadcast_to(known[d.name], value.shape) for d in found.divisors]
     best: tuple[int, int, tuple[int, ...]] | None = None
     for powers in product(range(_MOST_POWERS + 1), repeat=len(divisors)):
