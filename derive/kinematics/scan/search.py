@@ -154,7 +154,7 @@ def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Cal
     yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
     # what is further away than the nearest root need not be looked at
     away = Select(sp.Lt(_NEAREST, sp.pi), _NEAREST + 2 * AHEAD, sp.pi)
-    end = Select(ONWARD, _TURN - AHEAD, away)
+    end = Select(ONWARD, Select(sp.Lt(_NEAREST, _TURN), _NEAREST + 2 * AHEAD, _TURN - AHEAD), away)
     yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, end)))
 
 
@@ -237,7 +237,9 @@ def _ends() -> Iterator[Let]:
     yield Let(count("next_stage"), stage)
     turns_back = sp.And(flag("way_ends"), sp.Not(ONWARD), sp.Gt(DIRECTION, 0))
     yield Let(flag("turns_back"), turns_back)
-    is_found = sp.And(ONWARD, sp.Lt(real("nearest_now"), _FAR), sp.Eq(count("next_stage"), _LOOKING))
+    # steps may lead to a root that is far away: there may be others before it
+    is_reached = sp.Le(real("nearest_now"), _PLACE + _WIDTH + 2 * AHEAD)
+    is_found = sp.And(ONWARD, is_reached, sp.Eq(count("next_stage"), _LOOKING))
     is_done = sp.And(flag("way_ends"), sp.Not(flag("turns_back")))
     yield Let(flag("is_over"), sp.Or(is_done, is_found, sp.Le(_PASSES_LEFT, 0)))
 
