@@ -1,7 +1,5 @@
 """Compile every C source of a folder with clang, each warning an error: `make clang`. The tests do so with gcc."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor

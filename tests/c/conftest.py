@@ -1,7 +1,5 @@
 """The folders of programs go when the tests are over."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -1,7 +1,5 @@
 """The sources of a mechanism, compiled with a program that answers questions about it."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Limits and turns: open ends, quantities beside the axes, and the turn that would be inside."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

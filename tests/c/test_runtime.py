@@ -1,7 +1,5 @@
 """The C of the runtime compiles where it stands, each file alone, with the headers that the compiler writes."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What is written: its width, what it includes, what it says of a machine, and its use."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from pathlib import Path

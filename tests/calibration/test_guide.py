@@ -1,7 +1,5 @@
 """The guide to calibration: its listings, executed, with the output that the text shows."""
 
-from __future__ import annotations
-
 import doctest
 
 from tests.test_python_guide import DOCS

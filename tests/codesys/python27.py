@@ -1,7 +1,5 @@
 """The parts of a Python 3 source that are not Python 2.7: nodes of the syntax tree that 2.7 did not have."""
 
-from __future__ import annotations
-
 import ast
 import io
 import tokenize

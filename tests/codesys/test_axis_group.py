@@ -1,7 +1,5 @@
 """The programs of the guide for an axis group, executed on stand-ins: moves, queries, and a coupled kinematics."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

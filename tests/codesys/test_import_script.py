@@ -1,7 +1,5 @@
 """The import script, run in a stand-in for the ScriptEngine: a library with every object, checked by a compiler."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import re

@@ -1,7 +1,5 @@
 """The program of the guide that calls a block outside an axis group, executed."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -4,8 +4,6 @@ It looks at words alone, so it is independent of the grammar, the type checks an
 integer where an LREAL is meant, a division of integers, an unqualified error) is refused by `check*.py`.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Python source of declarations: one class per structure and block, one function per routine."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from . import ast, python_names

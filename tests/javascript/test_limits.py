@@ -1,7 +1,5 @@
 """Limits and turns: a mapping with open ends, what the machine says of them, and the turn that would be inside."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """What is written: its width, its imports, and what it says of a machine."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A refusal in a sentence: the text is that of the Python package, whatever its amount, its unit and its turn."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

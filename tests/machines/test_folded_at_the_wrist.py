@@ -5,8 +5,6 @@ is then larger than the lengths: one of them was exactly zero, so that cosine an
 pose was answered with a rotation of another pose, and with the status OK.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status

@@ -1,7 +1,5 @@
 """The extension of the generated package, compiled into `build/native`: each source again where it has changed."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import shlex

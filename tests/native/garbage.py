@@ -1,7 +1,5 @@
 """What is no input, in the place of numbers, rows and frames: for both cores."""
 
-from __future__ import annotations
-
 from array import array
 from collections import UserList
 from collections.abc import Iterator

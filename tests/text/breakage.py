@@ -1,7 +1,5 @@
 """Ways to break a unit: a text in a method, and the wrong text that replaces it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Whether two answers are the same to rounding."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

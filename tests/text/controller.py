@@ -1,7 +1,5 @@
 """A controller that calls a block: plain values in, a status and plain values out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """Blocks of the flat profile: the text of a unit, with what its base has in it, and without that base."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """Machines with limits, and poses inside them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.random import Generator
 

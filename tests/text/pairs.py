@@ -1,7 +1,5 @@
 """Every machine as a function block and in Python, whatever its kind."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from derive.description.mechanism import Mechanism

@@ -1,7 +1,5 @@
 """Every reason of Diagnose, provoked: each number is made NaN in turn, and each condition violated in turn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any

@@ -4,8 +4,6 @@ For every block with turns to choose from, positions, loops and orientation kine
 drives allow together is a machine in Python with the common limits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The blocks that set and read configurations, and the relation between configurations."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The answers of Diagnose against known properties of a machine. Other tests compare both languages."""
 
-from __future__ import annotations
-
 import pytest
 from softkin import Diagnosis, Scara2Z, Status
 

@@ -1,7 +1,5 @@
 """Every method of every emitted block is executed, and answers what the Python package answers."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism

@@ -1,7 +1,5 @@
 """Every statement of every emitted unit is executed by the tests of this folder: none is dead, none untried."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Collection, Iterator
 from functools import cache, partial

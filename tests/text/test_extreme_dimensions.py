@@ -1,7 +1,5 @@
 """Whatever the dimensions are, a block ends in a status: a division by zero would stop the controller."""
 
-from __future__ import annotations
-
 import softkin
 from softkin import KinematicsError
 

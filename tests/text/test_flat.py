@@ -1,7 +1,5 @@
 """The flat profile: a block has all its methods, extends nothing, and answers what the block with a base answers."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import replace

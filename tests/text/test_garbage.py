@@ -1,8 +1,6 @@
 """Invalid values in every input of every method: refused with outputs unchanged, or not read; nothing stops a
 controller."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

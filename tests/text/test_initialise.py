@@ -1,7 +1,5 @@
 """Initialize: its refusals; no other method reads the inputs."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The functions that touch the opaque matrix of the controller's library."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Before Initialize, and after one that refused, no method works: a status, and outputs untouched."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Pairs of singular factors driven together, in executed Structured Text: no pose is lost, and every answer is met."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Small steps, each with the last answer as the reference: no jump, until a limit refuses."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

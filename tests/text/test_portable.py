@@ -1,7 +1,5 @@
 """Every emitted object is in the portable subset; and the lint finds every kind of exception."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import pytest

@@ -1,7 +1,5 @@
 """Frames from REAL, and frames that are a little more off than that, in every method of a block that takes a matrix."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Turning

@@ -1,7 +1,5 @@
 """At and near poses where branches meet or angles are free, block and Python give the same answers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial

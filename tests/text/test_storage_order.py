@@ -1,7 +1,5 @@
 """The matrix of the controller's library may store its elements by rows or by columns: the answers are the same."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """A mesh to be shown: one triangle as binary glTF."""
 
-from __future__ import annotations
-
 import json
 import struct
 

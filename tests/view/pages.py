@@ -1,7 +1,5 @@
 """The pages that the browser opens: the whole catalogue, and a machine of a user with a mesh of its own."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Mapping

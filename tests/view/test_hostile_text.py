@@ -1,7 +1,5 @@
 """The page is a program of its own: text of a machine is shown, and no other script runs."""
 
-from __future__ import annotations
-
 import re
 from base64 import b64encode
 from hashlib import sha256

@@ -1,7 +1,5 @@
 """The pages themselves: their size, their complaints, their links and their speed."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

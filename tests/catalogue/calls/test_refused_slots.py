@@ -1,7 +1,5 @@
 """Every slot without axes says why: the axis that is beyond a limit, and by how much, or what is out of reach."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """A machine at the prompt and in a notebook: what it has is in the tables, and every `repr` is one line."""
 
-from __future__ import annotations
-
 import re
 import xml.etree.ElementTree as ET
 

@@ -1,7 +1,5 @@
 """Declarations: what a text defines, from a variable to a function block."""
 
-from __future__ import annotations
-
 from ..faults import Place
 from .expressions import Expression
 from .node import node

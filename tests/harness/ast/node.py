@@ -1,7 +1,5 @@
 """What makes a class a node of the syntax tree."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeVar, dataclass_transform
 

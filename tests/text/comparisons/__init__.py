@@ -3,8 +3,6 @@
 A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from tests.text.comparisons import axes, configurations, initialization, offsets, orientations, poses, velocities

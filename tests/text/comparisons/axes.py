@@ -1,7 +1,5 @@
 """The axes of a block: their properties, and the limits of the drives, which narrow those of the machine."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Joint, Kind

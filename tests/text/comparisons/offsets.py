@@ -1,7 +1,5 @@
 """Points at an offset from the flange, and the configuration of each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from tests.text.closeness import asked, assert_same

@@ -1,7 +1,5 @@
 """Orientations: of the axes, and the images of the flange."""
 
-from __future__ import annotations
-
 from derive.description.mechanism import Turning
 from tests.text.closeness import asked, assert_same
 from tests.text.controller import OK, UNREACHABLE

@@ -1,7 +1,5 @@
 """Poses: from axis values to a pose, back again, and why a command is refused."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Velocities, and the poses where they have no bound: the Jacobian, singularities and their margins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan, pi, prod
 from typing import Any

@@ -1,7 +1,5 @@
 """Every block implements the interfaces of SoftMotion that its kind needs, method for method."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.harness.contract import INTERFACES, plain

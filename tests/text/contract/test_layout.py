@@ -1,7 +1,5 @@
 """How a text is laid out, and that the names in it are unique."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """The interface `ISoftkin` has our own methods, and no block has another header for one."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.harness import ast

@@ -4,8 +4,6 @@ The stand-in for SoftMotion's coupling calls the documented methods in the docum
 sums of vectors and products of matrices.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,8 +1,6 @@
 """Every method of the emitted orientation kinematics is executed, in both orders of the matrix, and answers as Python
 does."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 

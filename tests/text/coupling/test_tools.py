@@ -4,8 +4,6 @@ The stand-in for SoftMotion takes the tool's frame off the commanded one, asks f
 have, moves back by the tool in that rotation, and calls `CartesianToAxes`; it computes nothing else.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What every method of a closed loop must answer: the comparisons of the serial machines, but for free rotations."""
 
-from __future__ import annotations
-
 from derive.description.mechanism import Turning
 from tests.text.closeness import assert_same
 from tests.text.comparisons import COMPARISONS as SERIAL

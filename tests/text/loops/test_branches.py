@@ -1,7 +1,5 @@
 """Every combination of branch bytes, open ones and wrong ones among them, at poses and beside them."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every statement of every emitted loop is executed by the tests of this folder: none is dead, none untried."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product

@@ -1,7 +1,5 @@
 """Limits, and loops that do not close: a status for each."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.text.controller import IMPOSSIBLE, OK, UNREACHABLE, Controller

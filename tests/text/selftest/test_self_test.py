@@ -1,7 +1,5 @@
 """The self-test for the controller: everything passes on what was generated, and every planted fault is found."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import astuple
 from functools import cache

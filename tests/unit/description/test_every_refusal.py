@@ -1,7 +1,5 @@
 """The refusals of descriptions that are sound but for one part: each sentence names the part."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

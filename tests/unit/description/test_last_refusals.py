@@ -1,7 +1,5 @@
 """Refusals that no other test asserts: parts of a wrong kind, texts, turns that are none, machines without a pose."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Descriptions as people write them who write one for the first time: each fault is told by a sentence, at once."""
 
-from __future__ import annotations
-
 import re
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Descriptions that are wrong or not supported: refused with a sentence that names the fault."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

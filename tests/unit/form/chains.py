@@ -1,7 +1,5 @@
 """Serial machines of every kind: arms with six turns and all kinds of wrists, fewer turns, slides, held joints."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from sympy import pi

@@ -1,7 +1,5 @@
 """The one form of a chain: it is the same machine, and other words for it have the same form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

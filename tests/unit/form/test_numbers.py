@@ -1,7 +1,5 @@
 """Numbers in a chain: which are right angles, how the others are named, what is said of those that are almost right."""
 
-from __future__ import annotations
-
 import math
 import re
 from itertools import product

@@ -5,8 +5,6 @@ find_mean   the arithmetic-geometric mean: each pass needs a root, until both nu
 settle      the mean of a number and a second one, again and again, until it is the second one
 """
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

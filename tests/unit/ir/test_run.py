@@ -1,7 +1,5 @@
 """The reference interpreter: the meaning of every primitive, and the execution of a program."""
 
-from __future__ import annotations
-
 from math import atan2, cos, nextafter, pi, sin
 
 import numpy as np

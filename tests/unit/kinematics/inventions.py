@@ -1,7 +1,5 @@
 """Mechanisms for which the derivation was not tuned, each with its forward kinematics written by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Loops whose description names neither branches nor their assembly: both are derived, and mean what they say."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

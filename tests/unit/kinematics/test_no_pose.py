@@ -1,7 +1,5 @@
 """Machines whose nominal dimensions leave no pose: the refusal names the rod or the quantity, and comes at once."""
 
-from __future__ import annotations
-
 import re
 import time
 from dataclasses import replace

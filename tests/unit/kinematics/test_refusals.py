@@ -1,7 +1,5 @@
 """What the build says of programs that contradict each other: the last checks before the witness, with remedies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

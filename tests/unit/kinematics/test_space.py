@@ -1,7 +1,5 @@
 """Spatial arms for which the derivation was not tuned: built, and checked against the closure by the witness."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

@@ -1,7 +1,5 @@
 """Read once: what is read once, and is short, is written where it is read."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from derive.emit.python.printer import ScalarPrinter

@@ -1,7 +1,5 @@
 """Golden files of passes: what stands in one, read back from the text form of programs."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace

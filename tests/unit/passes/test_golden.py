@@ -3,8 +3,6 @@
 `python -m tests.unit.passes.test_golden` writes what the passes make now; read the difference before it is committed.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Parallel axes: a sum of angles takes the place of one of them, which follows at the end."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Machines that are never well conditioned: the witness accepts their right formulas, and still refuses wrong ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """The check in a finite field: right formulas hold exactly, and what is wrong by the last digit does not."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The measurement of a machine ends within its bound of work, with a refusal that names the stage and what to do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 

@@ -1,7 +1,5 @@
 """What the witness says of programs that are wrong in a way of their own: searches, modes, tilts, frames alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
