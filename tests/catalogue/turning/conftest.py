@@ -8,7 +8,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.turning_machines import TURNING, TurningMachine, turning_machines_of
 
 
-@pytest.fixture(params=[m for m in TURNING if m.name != "Kin_Hexapod"], ids=lambda m: m.name)
+@pytest.fixture(params=TURNING, ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
     return request.param
 
