@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import HALF_TURN, Command, Sample
 
 _SHEAR = 1e-4

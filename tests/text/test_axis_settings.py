@@ -14,8 +14,7 @@ import pytest
 import softkin
 
 from derive.description.mechanism import Joint, Mechanism
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller, asked, assert_same
 from tests.text.settings import TURNING, Range, poses, robot_of, together
 from tests.text.units import compiled
 

@@ -12,10 +12,9 @@ import pytest
 
 from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
-from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, asked, assert_same
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.samples import NO_TURN, Rows

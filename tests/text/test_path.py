@@ -5,8 +5,7 @@ import pytest
 
 from tests.catalogue.machines import Array, Machine
 from tests.catalogue.references import held_at
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK, UNREACHABLE
+from tests.text.controller import OK, UNREACHABLE, asked, assert_same
 from tests.text.limits import draw_inside, has_limits, is_inside
 from tests.text.serial_pairs import SerialPair
 

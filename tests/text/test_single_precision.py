@@ -4,8 +4,7 @@ import numpy as np
 
 from derive.description.mechanism import Turning
 from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import BAD_INPUT, OK
+from tests.text.controller import BAD_INPUT, OK, asked, assert_same
 from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Rows, Sample, tilted

@@ -12,11 +12,10 @@ from derive.description.mechanism import Role
 from tests.catalogue.machines import bare_machine, machine
 from tests.catalogue.test_offset import beside_the_first_axis, on_the_axis, turns_the_flange
 from tests.mechanisms import named
-from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.offsets import point_at
 from tests.text.comparisons.poses import assert_same_pose
-from tests.text.controller import OK, UNREACHABLE
+from tests.text.controller import OK, UNREACHABLE, asked, assert_same
 from tests.text.samples import NO_TURN, Sample, coinciding, near
 from tests.text.serial_pairs import SerialPair, serial_pair
 

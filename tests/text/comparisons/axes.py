@@ -3,9 +3,8 @@
 import numpy as np
 
 from derive.description.mechanism import Joint, Kind
-from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons.poses import assert_same_pose, solved
-from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked, assert_same, is_close
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 from tests.text.settings import Range, own_limits, together

@@ -8,8 +8,7 @@ from softkin import Frame
 from softkin._start import IterativeForward
 
 from tests.text import values
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 

@@ -12,10 +12,9 @@ from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import EVERYTHING, position_part
 from tests.harness.instance import Entry
 from tests.text import values
-from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons import COMPARISONS as COMMON
 from tests.text.comparisons.initialization import initialize
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, asked, assert_same, is_close
 from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
 from tests.text.samples import HALF_TURN, Rows, Sample, tilted
 from tests.text.units import compiled, public_methods

@@ -5,8 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import BAD_INPUT, OK, UNREACHABLE
+from tests.text.controller import BAD_INPUT, OK, UNREACHABLE, asked, assert_same
 from tests.text.loops.machines import Loop
 from tests.text.samples import Bytes, Sample
 
