@@ -1,7 +1,7 @@
 """Every test that asks for a mechanism or its machines runs for the whole catalogue.
 
 Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in the middle): closed loops go through
-tests of the same thing in `loops`. The hexapod, which has no branches, has `hexapod`.
+tests of the same thing in `loops`. What the hexapod alone can be asked is in `hexapod`.
 """
 
 from pathlib import Path

@@ -1,5 +1,5 @@
-"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform by joints that move
-ends of its rods. The hexapod, whose legs are joints, has `hexapod`.
+"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform. What the hexapod
+alone can be asked, whose legs are joints, is in `hexapod`.
 """
 
 import pytest
