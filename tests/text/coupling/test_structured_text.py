@@ -11,6 +11,7 @@ from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import EVERYTHING, position_part
 from tests.harness.instance import Entry
+from tests.orthonormal import rodrigues
 from tests.text import values
 from tests.text.comparisons import COMPARISONS as COMMON
 from tests.text.comparisons.initialization import initialize
@@ -50,10 +51,7 @@ def images(rng: np.random.Generator) -> Iterator[tuple[Image, Callable[[], np.nd
 
 
 def _about(axis: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    angle = rng.uniform(-np.pi, np.pi)
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return rodrigues(axis, rng.uniform(-np.pi, np.pi))
 
 
 def compatible(pair: OrientationPair, sample: Sample) -> None:
