@@ -1,4 +1,4 @@
-"""Limits of axes, also helical ones, and of other quantities: tested last, with a tolerance; they choose no solution."""
+"""Limits of axes, also helical ones, and of other quantities: tested last, with a tolerance; they never choose."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""The programs of the guide, executed on stand-ins: moves, queries, a coupled kinematics; in an axis group and outside."""
+"""The programs of the guide, executed on stand-ins: moves, queries, a coupled kinematics; in a group and outside."""
 
 import re
 from pathlib import Path

@@ -1,6 +1,4 @@
-"""There and back: the inverse in closed form, forward kinematics from the home pose, from a start, without memory, and in
-batches.
-"""
+"""There and back: the inverse in closed form, forward kinematics from home, from a start, without memory, and in batches."""
 
 from collections.abc import Callable
 

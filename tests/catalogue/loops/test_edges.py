@@ -1,4 +1,4 @@
-"""Boundaries of a loop: rods that are flat or do not meet, centres that coincide, legs without a direction, right angles."""
+"""Boundaries of a loop: rods that are flat or do not meet, centres that coincide, legs without a direction."""
 
 from itertools import product
 
