@@ -7,18 +7,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 COMPILE = (
-    sys.executable,
-    "-m",
-    "ziglang",
-    "cc",
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-Wconversion",
-    "-O0",
-    "-c",
-)
+    sys.executable, "-m", "ziglang", "cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-O0", "-c",
+)  # fmt: skip
 """The clang that the package ziglang brings, for machines without one."""
 
 

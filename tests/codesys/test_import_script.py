@@ -125,13 +125,9 @@ def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None
 
 def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
     kinds = {
-        "FunctionBlock": "FUNCTION_BLOCK",
-        "Function": "FUNCTION",
-        "Enumeration": "TYPE",
-        "Structure": "TYPE",
-        "Get": "GET",
-        "Program": "PROGRAM",
-    }
+        "FunctionBlock": "FUNCTION_BLOCK", "Function": "FUNCTION", "Enumeration": "TYPE", "Structure": "TYPE",
+        "Get": "GET", "Program": "PROGRAM",
+    }  # fmt: skip
     found = {}
     for node in nodes:
         if isinstance(node, Dut):

@@ -181,15 +181,6 @@ joints and by angles of its own, which count in degrees."""
 BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
 
 CHAINS = {
-    **WITHOUT_ARM,
-    **FROM_FLANGE,
-    **OF_DEGREE_FOUR,
-    **WRIST_BEYOND_QUARTIC,
-    **THREE_PARALLEL,
-    **BY_TABLE,
-    **BENT_WRISTS,
-    **LONG_LINKS,
-    **MEETING_AXES,
-    **SHORT_ARMS,
-    **TOOL_ON_AXIS,
-}
+    **WITHOUT_ARM, **FROM_FLANGE, **OF_DEGREE_FOUR, **WRIST_BEYOND_QUARTIC, **THREE_PARALLEL, **BY_TABLE,
+    **BENT_WRISTS, **LONG_LINKS, **MEETING_AXES, **SHORT_ARMS, **TOOL_ON_AXIS,
+}  # fmt: skip

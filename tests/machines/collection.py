@@ -241,26 +241,10 @@ TURNS_ABOUT_Y = {
 }
 
 MACHINES: Mapping[str, Mechanism] = {
-    **SEEN_FROM_A_KNOWN_FRAME,
-    **TURNS_ABOUT_Y,
-    **DISTANCES_ALONE,
-    **ACROSS,
-    **HALF_TURNS,
-    **ALONG_A_DIRECTION,
-    **CONSTANT_RADIUS,
-    **THREE_LENGTHS,
-    **SQUARES_WITH_LENGTHS,
-    **PARAMETERS_DECIDE,
-    **HELD,
-    **FIRST_HELD,
-    **ONE_ROOT,
-    **OTHERS,
-    **SEARCHED,
-    **CHAINS,
-    **NUMBERS,
-    **TASK_MACHINES,
-    **SWEPT,
-}
+    **SEEN_FROM_A_KNOWN_FRAME, **TURNS_ABOUT_Y, **DISTANCES_ALONE, **ACROSS, **HALF_TURNS, **ALONG_A_DIRECTION,
+    **CONSTANT_RADIUS, **THREE_LENGTHS, **SQUARES_WITH_LENGTHS, **PARAMETERS_DECIDE, **HELD, **FIRST_HELD, **ONE_ROOT,
+    **OTHERS, **SEARCHED, **CHAINS, **NUMBERS, **TASK_MACHINES, **SWEPT,
+}  # fmt: skip
 SOLUTIONS: Mapping[str, int] = {
     **{name: 2 ** len(m.branches) for name, m in MACHINES.items()},
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),

@@ -10,13 +10,9 @@ from tests.text.units import compiled
 
 SCARA = load(MECHANISMS / "kin_scara2_z.py")
 GIVEN = {
-    "arm_length_1": 300.0,
-    "arm_length_2": 200.0,
-    "lower_a1": -10.0,
-    "upper_a1": 40.0,
-    "lower_z": 0.0,
+    "arm_length_1": 300.0, "arm_length_2": 200.0, "lower_a1": -10.0, "upper_a1": 40.0, "lower_z": 0.0,
     "upper_z": 100.0,
-}
+}  # fmt: skip
 ROBOT = Scara2Z(**GIVEN)
 REFERENCE = (0.0, 0.0, 0.0)
 NAN = float("nan")

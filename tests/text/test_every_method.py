@@ -14,14 +14,9 @@ ITERATED = ("Hexapod", "Hexaglide", "3RRR", "ThreeParallel")
 DEAR = tuple(f"{name}.{method}" for name in ITERATED for method in ("CartesianToAxes", "Diagnose"))
 """What takes long: inverse kinematics of machines that iterate."""
 EVERYWHERE = (
-    "AxesToCartesian",
-    "CartesianToAxes",
-    "AxesToOrientation",
-    "IsSingularity",
-    "Jacobian",
-    "AxesToConfiguration_Offset",
-    "CartesianToAxes_Offset",
-)
+    "AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian",
+    "AxesToConfiguration_Offset", "CartesianToAxes_Offset",
+)  # fmt: skip
 """Methods of loops that are asked for axis values at which no loop closes as well."""
 
 

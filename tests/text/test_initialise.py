@@ -163,15 +163,9 @@ def spoiled(parameter: Parameter, value: float) -> float:
 
 State = dict[str, dict[Any, Any]]
 INDEPENDENT = {
-    "GetKinematicsName",
-    "GetConfigurationDataSize",
-    "GetDefaultConfigurationData",
-    "CPConnectible",
-    "ActivateAutomaticRotaryPeriods",
-    "IsConfigSingular",
-    "GetPeriods",
-    "AxisSettings",
-}
+    "GetKinematicsName", "GetConfigurationDataSize", "GetDefaultConfigurationData", "CPConnectible",
+    "ActivateAutomaticRotaryPeriods", "IsConfigSingular", "GetPeriods", "AxisSettings",
+}  # fmt: skip
 """Methods that need no parameter, and work as ever: AxisSettings keeps what it is given for Initialize."""
 
 

@@ -1,4 +1,4 @@
-"""There and back: the inverse in closed form, forward kinematics from home, from a start, without memory, and in batches."""
+"""There and back: in closed form, and by forward kinematics from home, from a start, without memory, in batches."""
 
 from collections.abc import Callable
 

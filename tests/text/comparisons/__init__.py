@@ -44,14 +44,7 @@ COMPARISONS: dict[str, Comparison] = {
 """By the name of the method."""
 
 POSELESS = {
-    "InitializeReason",
-    "Initialize",
-    "IsInitialized",
-    "GetKinematicsName",
-    "GetAxisProperties",
-    "AxisSettings",
-    "GetOrientationImage",
-    "GetFlangeOrientationImageTotal",
-    "GetConfigurationDataSize",
-}
+    "InitializeReason", "Initialize", "IsInitialized", "GetKinematicsName", "GetAxisProperties", "AxisSettings",
+    "GetOrientationImage", "GetFlangeOrientationImageTotal", "GetConfigurationDataSize",
+}  # fmt: skip
 """Methods that no pose goes into: a few samples of a machine are enough."""

@@ -215,15 +215,10 @@ def test_every_planted_fault_is_found(mechanism: Mechanism) -> None:
 
 
 FOUND = (
-    "CartesianToAxes: a sign",
-    "AxesToCartesian: a sign",
-    "CartesianToAxes: an offset",
-    "CartesianToAxes: two axes exchanged",
-    "AxesToCartesian: two bytes exchanged",
-    "CartesianToAxes: an error",
-    "CartesianToAxes: a turn",
-    "CartesianToAxes: a constant of the machine",
-)
+    "CartesianToAxes: a sign", "AxesToCartesian: a sign", "CartesianToAxes: an offset",
+    "CartesianToAxes: two axes exchanged", "AxesToCartesian: two bytes exchanged", "CartesianToAxes: an error",
+    "CartesianToAxes: a turn", "CartesianToAxes: a constant of the machine",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("fault", FOUND)

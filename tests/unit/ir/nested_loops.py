@@ -222,13 +222,9 @@ def in_structured_text(name: str) -> Answers:
 
 
 LANGUAGES: dict[str, Callable[..., Answers]] = {
-    "the interpreter": interpreted,
-    "Python": in_python,
-    "Python on arrays": in_arrays,
-    "C": in_c,
-    "JavaScript": in_javascript,
-    "Structured Text": in_structured_text,
-}
+    "the interpreter": interpreted, "Python": in_python, "Python on arrays": in_arrays, "C": in_c,
+    "JavaScript": in_javascript, "Structured Text": in_structured_text,
+}  # fmt: skip
 
 
 def answers(language: str, name: str, folder: Path) -> Answers:

@@ -57,13 +57,9 @@ def test_angles_add(one: int, other: int, slope: int) -> None:
 
 
 PROVEN = {
-    "Kin_Scara4_ZCcoupled_Type1": "",
-    "Kin_ArticulatedRobot_6DOF": "",
-    "Kin_SCCC": "",
-    "MC_KIN_TYPE_12_XY": "",
-    "Kin_Crane": "",
-    "Kin_Hexapod": "forward kinematics iterates",
-}
+    "Kin_Scara4_ZCcoupled_Type1": "", "Kin_ArticulatedRobot_6DOF": "", "Kin_SCCC": "", "MC_KIN_TYPE_12_XY": "",
+    "Kin_Crane": "", "Kin_Hexapod": "forward kinematics iterates",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", PROVEN)
