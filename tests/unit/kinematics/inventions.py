@@ -65,8 +65,13 @@ def invention(hand: Hand, **description: object) -> Invention:
     return Invention(Mechanism(**{**details, **read, **description}), hand)  # type: ignore[arg-type]
 
 
+def described(**description: object) -> Mechanism:
+    """The same of a description that nobody compares with forward kinematics by hand."""
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
+
+
 def planar_arm(**changes: object) -> Mechanism:
-    """The arm with two links in a plane, changed; nobody compares it with forward kinematics by hand."""
+    """The arm with two links in a plane, changed."""
     stated = {
         "parameters": (L1, L2),
         "joints": (A1, A2),
@@ -75,7 +80,7 @@ def planar_arm(**changes: object) -> Mechanism:
         "branches": (ELBOW,),
         "offset_interface": False,
     }
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**stated, **changes}).mechanism
+    return described(**{**stated, **changes})
 
 
 def e(angle: Array) -> Array:
