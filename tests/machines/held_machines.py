@@ -22,8 +22,7 @@ M_HEIGHT = length("height_m", "base to shoulder", nominal=0.36)
 M_UPPER = length("link_u", "upper arm", nominal=0.42)
 M_FORE = length("link_f", "forearm", nominal=0.4)
 _machine = partial(
-    textbook,
-    (X, Z, A1, A2, A3, A4, A5, A6, E1, PIVOT_X, HEIGHT, L1, L2, L3, L4, L5, M_HEIGHT, M_UPPER, M_FORE),
+    textbook, (X, Z, A1, A2, A3, A4, A5, A6, E1, PIVOT_X, HEIGHT, L1, L2, L3, L4, L5, M_HEIGHT, M_UPPER, M_FORE)
 )
 
 HELD = {

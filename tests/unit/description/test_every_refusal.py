@@ -170,10 +170,7 @@ NOWHERE: dict[str, tuple[Mechanism, str]] = {
         arm(parameters=(), joints=(A1, RADIUS), chain=Rz(A1) * Tx(RADIUS), branches=()),
         "no pose is possible where the joints may be (R from 0 to 50): check the nominal values of parameters",
     ),
-    "nothing that could be the reason": (
-        arm(),
-        "no sampled pose is possible: check the nominal values of parameters",
-    ),
+    "nothing that could be the reason": (arm(), "no sampled pose is possible: check the nominal values of parameters"),
 }
 
 

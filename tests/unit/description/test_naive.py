@@ -183,10 +183,7 @@ FAULTS = {
         written(chain=CHAIN.replace("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)")),
         "of the chain shifts by link_1*z1/2, which is no length: its powers must add to 1",
     ),
-    "a misspelt import": (
-        written("from derive.mechanism import Mechanizm"),
-        "did you mean 'Mechanism'?",
-    ),
+    "a misspelt import": (written("from derive.mechanism import Mechanizm"), "did you mean 'Mechanism'?"),
     "limits the wrong way round": (
         written('A2 = rotary("A2", "turn", limits=(90, -90))'),
         "joint 'A2': its limits (90, -90) are empty; state the lower end first",

@@ -188,9 +188,7 @@ INVENTIONS = {
         task=Task("xy"),
     ),
     "an oblique slide": invention(
-        lambda p, q: (q["P1"] + e(np.pi / 3) * q["P2"], 0, 0),
-        chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2),
-        task=Task("xy"),
+        lambda p, q: (q["P1"] + e(np.pi / 3) * q["P2"], 0, 0), chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2), task=Task("xy")
     ),
     "clock angles": invention(
         lambda p, q: (1j * (p["link_1"] * e(-q["A1"]) + p["link_2"] * e(-q["A2"])), 0, 0),
