@@ -19,16 +19,8 @@ from tests.catalogue.refusals import refusal
 NUMBERS = (nan, inf, -inf, 1e300, -1e300, 1.1e9)
 """Not finite, or beyond what is allowed."""
 NO_NUMBERS: tuple[object, ...] = (
-    "12345678",
-    None,
-    5,
-    5.0,
-    [None] * 4,
-    ["1", "2", "3", "4"],
-    [[1.0], [2.0]],
-    {"a": 1},
-    1j,
-)
+    "12345678", None, 5, 5.0, [None] * 4, ["1", "2", "3", "4"], [[1.0], [2.0]], {"a": 1}, 1j,
+)  # fmt: skip
 IDENTITY = np.eye(3)
 NO_ROTATIONS = {
     "scaled": 1.001 * IDENTITY,

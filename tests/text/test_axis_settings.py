@@ -277,14 +277,8 @@ def test_limits_of_block_and_drive_decide_together(mechanism: Mechanism) -> None
 
 
 CHANGES: tuple[Range, ...] = (
-    None,
-    DRIVE,
-    (100.0, 440.0),
-    (-720.0, 720.0),
-    (-40.0, 20.0),
-    (-250.0, -150.0),
-    (-180.0, 180.0),
-)
+    None, DRIVE, (100.0, 440.0), (-720.0, 720.0), (-40.0, 20.0), (-250.0, -150.0), (-180.0, 180.0),
+)  # fmt: skip
 
 
 @pytest.mark.long
