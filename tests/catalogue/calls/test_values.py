@@ -1,7 +1,6 @@
 """A machine is a value: written down and read again, equal, hashed, copied, never changed; and shown as a table."""
 
 import copy
-import json
 import pickle
 import re
 import xml.etree.ElementTree as ET
@@ -12,7 +11,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Mechanism, Status
 
-from tests.catalogue.calls.mountings import BASE, EVERY, machines, tool_of
+from tests.catalogue.calls.mountings import BASE, EVERY, confirm_copies, machines, tool_of
 from tests.catalogue.calls.robots import NAMES, drawn_limits, poses, robots, with_limits
 from tests.catalogue.refusals import refusal
 
@@ -44,20 +43,7 @@ def test_every_machine_is_a_value(name: str) -> None:
     for number, one in enumerate(robots(name)):
         axes = poses(name, number, 1)[0]
         made = with_limits(one.made, drawn_limits(one, axes, rng))
-        written = json.loads(json.dumps(made.to_dict(), allow_nan=False))
-        copies = (
-            copy.copy(made),
-            copy.deepcopy(made),
-            pickle.loads(pickle.dumps(made)),
-            Mechanism.from_dict(written),
-            type(made).from_json(made.to_json()),
-            eval(repr(made), vars(softkin)),
-            made.changed(),
-        )
-        for other in copies:
-            assert other == made and hash(other) == hash(made)
-            assert type(other) is type(made) and repr(other) == repr(made) and other.limits == made.limits
-            assert other.forward(axes) == made.forward(axes)
+        confirm_copies(made, axes, type(made).from_json(made.to_json()))
         for parameter in made.PARAMETERS:
             assert getattr(made, parameter.name) == made.parameters[parameter.name]
         before = (repr(made), made.checks_limits, made.forward(axes))
