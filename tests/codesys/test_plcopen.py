@@ -192,9 +192,17 @@ def test_what_the_standard_has_no_element_for() -> None:
         for word in ("Private", "Protected")
     )
     assert protected == [
-        "Describe", "ReadInputs", "FindPose", "SolveBranch", "ReasonOf", "FindJacobian", "FindMargins",
-        "FindOrientation", "FindOffsetBranches", "SolveOffsetBranch",
-    ]  # fmt: skip
+        "Describe",
+        "ReadInputs",
+        "FindPose",
+        "SolveBranch",
+        "ReasonOf",
+        "FindJacobian",
+        "FindMargins",
+        "FindOrientation",
+        "FindOffsetBranches",
+        "SolveOffsetBranch",
+    ]
     assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
     assert private == []
     base = _only(root, ".//p:pou[@name='Softkin_Kinematics']")

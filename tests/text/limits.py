@@ -1,5 +1,7 @@
 """Machines with limits, and poses inside them."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.random import Generator
 

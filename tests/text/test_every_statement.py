@@ -1,5 +1,7 @@
 """Every statement of every emitted unit is executed by the tests of this folder: none is dead, none untried."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Callable, Collection, Iterator
 from functools import cache, partial
@@ -22,6 +24,7 @@ from tests.text import (
     test_initialise,
     test_limits,
     test_matrix_functions,
+    test_not_initialised,
     test_shared_functions,
     test_shared_matrices,
     test_singular_poses,
@@ -122,7 +125,7 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_initialise.test_a_configuration_that_is_too_small_is_refused(pairs)
             test_garbage.test_garbage_in_one_number(pairs)
             test_garbage.test_what_is_no_rotation(pairs)
-            test_initialise.test_no_method_works(pairs, test_initialise.fresh)
+            test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
             for one in pairs[:4]:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
                     compare_all(one, sample)
@@ -195,7 +198,7 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
     """
     yield partial(test_blocks_alone.test_the_number_of_axes, serial_pairs)
     yield partial(test_blocks_alone.test_calling_the_block_itself_does_nothing, serial_pairs)
-    yield partial(test_initialise.test_no_method_works, serial_pairs, test_initialise.fresh)
+    yield partial(test_not_initialised.test_no_method_works, serial_pairs, test_not_initialised.fresh)
     yield partial(test_initialise.test_limits_are_in_order, serial_pairs, 10.0, 10.0)
     yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, serial_pairs, 36)
     yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, serial_pairs)
