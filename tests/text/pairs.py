@@ -1,12 +1,14 @@
 """Every machine as a function block and in Python, whatever its kind."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
 from tests.text import comparisons
 from tests.text.comparisons import Comparison
-from tests.text.loops.machines import COMPARISONS as OF_LOOPS
+from tests.text.loops import answers
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 
@@ -25,4 +27,4 @@ def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
 
 def comparisons_of(mechanism: Mechanism) -> Mapping[str, Comparison]:
     """The expected answers of all methods of its block."""
-    return OF_LOOPS if mechanism.rods else comparisons.COMPARISONS
+    return answers.COMPARISONS if mechanism.rods else comparisons.COMPARISONS
