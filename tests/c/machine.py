@@ -1,7 +1,5 @@
 """Questions to the driver and its answers, in the form that the comparison of languages has: see `driver.c`."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The PLCopenXML files: valid, read back to the text of the `.st` files, and complete."""
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 from pathlib import Path

@@ -32,15 +32,8 @@ def facts(one: Robot) -> Answer:
     """What a class says of itself."""
     made = one.made
     names = (
-        "NAME",
-        "DEFAULT_CONFIGURATION",
-        "JACOBIAN_ROWS",
-        "MARGINS",
-        "READS_ROTATION",
-        "FREEDOM",
-        "ROLE",
-        "BRANCHES",
-    )
+        "NAME", "DEFAULT_CONFIGURATION", "JACOBIAN_ROWS", "MARGINS", "READS_ROTATION", "FREEDOM", "ROLE", "BRANCHES",
+    )  # fmt: skip
     found = {name: getattr(made, name) for name in (*names, "PERIOD_AXES", "DISTANCE_AXES")}
     lists = {name: [str(one) for one in getattr(made, name)] for name in ("AXES", "PARAMETERS", "CONFIGURATION")}
     if made.PARAMETERS and made.PARAMETERS[-1].name == APPENDED:

@@ -3,13 +3,8 @@
 from collections.abc import Mapping
 
 _TRIANGLE = {
-    "rail_x_1": 0.0,
-    "rail_y_1": 150.0,
-    "rail_x_2": -130.0,
-    "rail_y_2": -75.0,
-    "rail_x_3": 130.0,
-    "rail_y_3": -75.0,
-}
+    "rail_x_1": 0.0, "rail_y_1": 150.0, "rail_x_2": -130.0, "rail_y_2": -75.0, "rail_x_3": 130.0, "rail_y_3": -75.0,
+}  # fmt: skip
 _DELTA = {
     f"{name}_{i}": value
     for name, value in {"base_radius": 140.0, "inner_arm": 200.0, "outer_arm": 450.0, "tcp_radius": 45.0}.items()

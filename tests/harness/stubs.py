@@ -3,8 +3,6 @@
 Sizes and the storage order of the matrix are not documented, so a test can choose them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -5,8 +5,6 @@ smallest margin of the pose. Where that margin is below `SINGULAR`, axes are not
 to one frame.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field

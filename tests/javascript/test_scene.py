@@ -1,7 +1,5 @@
 """What is drawn of a machine: it follows the machine, rods keep their lengths, and lines are those of the drawing."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

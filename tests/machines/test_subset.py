@@ -14,12 +14,11 @@ from derive.drawing.drawing import drawing_of
 from derive.emit.picture.view import axes_of
 from derive.kinematics.build import build
 from tests.catalogue.refusals import refusal
-from tests.machines.both import forward_in_both, inverse_in_both
+from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.grid import grid
-from tests.machines.made import Array, built_of, imported_class, made
+from tests.machines.made import Array, made
 from tests.machines.subset_machines import A1, LOOPS, SUBSETS
 from tests.text.controller import OK, UNREACHABLE, Controller
-from tests.text.units import compiled_text
 
 UPRIGHT = ("arm in an upright plane", "arm on a wall that leans", "arm in an upright plane that points its tool")
 ORDER = "it must be coordinates in the order x, y, z, or '' of a machine that only turns"
@@ -30,13 +29,8 @@ NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 def loop(name: str) -> tuple[softkin.Mechanism, Controller]:
     """A loop in both languages, with offsets."""
     mechanism = validate(LOOPS[name])
-    built = built_of(mechanism)
-    robot_class = imported_class(mechanism, built)
     offsets = {f"offset_{j.key}": 11.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
-    robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
-    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
-    assert controller.initialise(robot.parameters) == OK
-    return robot, controller
+    return in_both(mechanism, offsets)[1:]
 
 
 def missed(mechanism: Mechanism, robot: softkin.Mechanism, axes: Array, position: Array) -> float:

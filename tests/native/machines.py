@@ -1,7 +1,5 @@
 """Machines on the native core, and the same ones whose calls are Python's."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import cache

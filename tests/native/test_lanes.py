@@ -1,7 +1,5 @@
 """Several poses at a time: what the lanes compute alone, and that a row is answered alike wherever it stands."""
 
-from __future__ import annotations
-
 import math
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The pictures of pages: the machine in a pose that is singular indeed, and maps that show what is known otherwise."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from xml.etree import ElementTree as ET

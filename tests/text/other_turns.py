@@ -1,7 +1,5 @@
 """A named turn that limits refuse while another is inside: both languages say which, and answer when it is named."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,15 +1,12 @@
 """Every reason of Diagnose, provoked: each number is made NaN in turn, and each condition violated in turn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
 import numpy as np
 
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import HALF_TURN, Command, Sample
 
 _SHEAR = 1e-4

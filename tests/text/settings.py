@@ -1,7 +1,5 @@
 """Limits that a drive hands over: as arguments, and together with those of a machine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """The costs in the header of every unit are upper bounds of the operations counted while the text runs."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import astuple

@@ -1,7 +1,5 @@
 """The answers of Diagnose against known properties of a machine. Other tests compare both languages."""
 
-from __future__ import annotations
-
 import pytest
 from softkin import Diagnosis, Scara2Z, Status
 
@@ -12,13 +10,9 @@ from tests.text.units import compiled
 
 SCARA = load(MECHANISMS / "kin_scara2_z.py")
 GIVEN = {
-    "arm_length_1": 300.0,
-    "arm_length_2": 200.0,
-    "lower_a1": -10.0,
-    "upper_a1": 40.0,
-    "lower_z": 0.0,
+    "arm_length_1": 300.0, "arm_length_2": 200.0, "lower_a1": -10.0, "upper_a1": 40.0, "lower_z": 0.0,
     "upper_z": 100.0,
-}
+}  # fmt: skip
 ROBOT = Scara2Z(**GIVEN)
 REFERENCE = (0.0, 0.0, 0.0)
 NAN = float("nan")

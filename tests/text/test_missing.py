@@ -1,7 +1,5 @@
 """The amounts of Diagnose, against geometry without an inverse. Other tests compare both languages."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

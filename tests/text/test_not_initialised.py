@@ -15,15 +15,9 @@ from tests.text.serial_pairs import SerialPair
 
 State = dict[str, dict[Any, Any]]
 INDEPENDENT = {
-    "GetKinematicsName",
-    "GetConfigurationDataSize",
-    "GetDefaultConfigurationData",
-    "CPConnectible",
-    "ActivateAutomaticRotaryPeriods",
-    "IsConfigSingular",
-    "GetPeriods",
-    "AxisSettings",
-}
+    "GetKinematicsName", "GetConfigurationDataSize", "GetDefaultConfigurationData", "CPConnectible",
+    "ActivateAutomaticRotaryPeriods", "IsConfigSingular", "GetPeriods", "AxisSettings",
+}  # fmt: skip
 """Methods that need no parameter, and work as ever: AxisSettings keeps what it is given for Initialize."""
 
 

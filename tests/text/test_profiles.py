@@ -1,8 +1,6 @@
 """Profiles of the SoftMotion contract: which interfaces an older library gets, and one line that changes one
 spelling."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from functools import lru_cache

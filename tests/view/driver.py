@@ -1,7 +1,5 @@
 """One run of `drive.mjs` in one browser, for all tests; npm brings the driver, and a browser where there is none."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -3,8 +3,6 @@
 A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from tests.text.comparisons import axes, configurations, initialization, offsets, orientations, poses, velocities
@@ -46,14 +44,7 @@ COMPARISONS: dict[str, Comparison] = {
 """By the name of the method."""
 
 POSELESS = {
-    "InitializeReason",
-    "Initialize",
-    "IsInitialized",
-    "GetKinematicsName",
-    "GetAxisProperties",
-    "AxisSettings",
-    "GetOrientationImage",
-    "GetFlangeOrientationImageTotal",
-    "GetConfigurationDataSize",
-}
+    "InitializeReason", "Initialize", "IsInitialized", "GetKinematicsName", "GetAxisProperties", "AxisSettings",
+    "GetOrientationImage", "GetFlangeOrientationImageTotal", "GetConfigurationDataSize",
+}  # fmt: skip
 """Methods that no pose goes into: a few samples of a machine are enough."""

@@ -1,7 +1,5 @@
 """Velocities, and the poses where they have no bound: the Jacobian, singularities and their margins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan, pi, prod
 from typing import Any
@@ -10,8 +8,7 @@ from softkin import Frame
 from softkin._start import IterativeForward
 
 from tests.text import values
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 

@@ -4,8 +4,6 @@ The stand-in for SoftMotion takes the tool's frame off the commanded one, asks f
 have, moves back by the tool in that rotation, and calls `CartesianToAxes`; it computes nothing else.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -17,8 +15,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.mounted.machines import TOOL, sample_of
 from tests.catalogue.references import held_at
 from tests.mechanisms import catalogue
-from tests.text.closeness import asked
-from tests.text.controller import OK, Controller
+from tests.text.controller import OK, Controller, asked
 from tests.text.samples import tilted
 from tests.text.units import compiled, public_methods
 

@@ -1,7 +1,5 @@
 """The function block: every method answers as Python does, to the last digit, and every statement of it runs."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Machines of every mechanism with rods, as a block and in Python, and poses of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Belts, parallelograms, wrists and both ways of a byte: what is drawn moves as the mechanism does."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

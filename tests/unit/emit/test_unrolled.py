@@ -1,7 +1,5 @@
 """All branches at once: `inverse_all`, `branches`, `branch` and batches against the branches one by one."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 

@@ -1,7 +1,5 @@
 """The root scan, on trials with known roots: on arrays, and on plain numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A conic and the unit circle alone: against roots with sixty digits, and at roots that are not simple."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import mpmath as mp

@@ -1,7 +1,5 @@
 """Residuals of trials as waves in the scanned joint: which are a conic, and that they are the residuals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

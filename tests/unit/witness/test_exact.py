@@ -1,7 +1,5 @@
 """The check in a finite field: right formulas hold exactly, and what is wrong by the last digit does not."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -59,13 +57,9 @@ def test_angles_add(one: int, other: int, slope: int) -> None:
 
 
 PROVEN = {
-    "Kin_Scara4_ZCcoupled_Type1": "",
-    "Kin_ArticulatedRobot_6DOF": "",
-    "Kin_SCCC": "",
-    "MC_KIN_TYPE_12_XY": "",
-    "Kin_Crane": "",
-    "Kin_Hexapod": "forward kinematics iterates",
-}
+    "Kin_Scara4_ZCcoupled_Type1": "", "Kin_ArticulatedRobot_6DOF": "", "Kin_SCCC": "", "MC_KIN_TYPE_12_XY": "",
+    "Kin_Crane": "", "Kin_Hexapod": "forward kinematics iterates",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", PROVEN)
