@@ -27,6 +27,7 @@ from derive.equations.closures.fixed_names import (
     signs_of,
     with_fixed_names,
 )
+from derive.equations.machine_checks import MachineCheck, apart
 from derive.equations.pitch.equations import with_refusal
 from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
@@ -40,7 +41,6 @@ from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.scan.guards import without_wrist
-from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.lowering.passes import DERIVED, NOTHING, applied
 from derive.plate.passive import commanded, passive_statements, renamed_in
 from derive.solver.solve import Derivation, solve
@@ -58,7 +58,7 @@ class Inverse:
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
     checks: tuple[MachineCheck, ...] = ()
-    """The checks of a trial on the machine, which do not depend on the pose."""
+    """The checks on the machine, which do not depend on the pose."""
 
     @property
     def known(self) -> tuple[Statement, ...]:
@@ -82,7 +82,8 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     kept = tuple(s for j in held for s in frozen_lets(j))
     before = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism))
     naming = (*before, *passive_statements(mechanism), *closure.lets)
-    return Inverse(closure, derivation, naming, mechanism.solved_joints, held)
+    statements, checks = apart(derivation.statements, fixed_names(mechanism))
+    return Inverse(closure, replace(derivation, statements=statements), naming, mechanism.solved_joints, held, checks)
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:

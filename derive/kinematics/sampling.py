@@ -84,17 +84,20 @@ def _first(values: NDArray[np.float64]) -> float:
     return float(np.ravel(values)[0])
 
 
-def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
+def sample_axes(
+    mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0, otherwise: float = 1.0
+) -> Samples:
     """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes.
 
     Those of a machine with the limits of its description are inside them. share: of the ranges, around the nominal
-    values of the joints.
+    values of the joints; otherwise: the size of a machine without any length.
     """
+    size = size_of(mechanism, machine, otherwise)
     generator = np.random.default_rng(seed)
     values: Samples = {}
     for joint in mechanism.joints:
         turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared and joint.is_angle else 1.0
-        low, high = _inside_limits(joint, machine, _range_of(joint, size_of(mechanism, machine)), 1.0 / turns)
+        low, high = _inside_limits(joint, machine, _range_of(joint, size), 1.0 / turns)
         drawn = joint.nominal + share * (generator.uniform(low, high, count) / turns - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
     return values

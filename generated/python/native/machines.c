@@ -50,6 +50,7 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "skewgantry3.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -132,6 +133,7 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular skewgantry3_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -184,9 +186,9 @@ const softkin_native softkin_machines[] = {
     {"kin_5axes 6ed7d0e58bbb1a05", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
     {"mc_kin_type_12_xy 8613d87872cad463", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
-    {"nutatinghead_cb 681f70785b60cbd4", &nutatinghead_cb_mechanism,
+    {"nutatinghead_cb 7435dbfe32dd308d", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
-    {"nutatingtable_bc 9e5a88cef1e91590", &nutatingtable_bc_mechanism,
+    {"nutatingtable_bc d32ef2378e3b07de", &nutatingtable_bc_mechanism,
         {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 b933ceccadc315dd", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
     {"p2c_type2 942b57fba31e0bcb", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
@@ -210,6 +212,7 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
+    {"skewgantry3 dc9a52a48cf49295", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,

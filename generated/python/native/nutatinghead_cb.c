@@ -171,10 +171,6 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_b, ref_c}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* b: its effective length is too short */
-  if (!(k->shared_size > 5e-10)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: its effective length is too short", "", 0.0, 0);
-  }
   const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
   /* law of cosines for b (r33): 1 - cosine, times a scale */
   const double one_less_cos_b = -r33 < 0.0 ? -r13_squared_plus_r23_squared/(1.0 + fabs(r33)) : r33 - 1.0;
@@ -411,10 +407,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
       r13 = frame->rotation[0][2], r23 = frame->rotation[1][2], r33 = frame->rotation[2][2],
       ref_c = reference[3], ref_b = reference[4];
-  const double shared_size_2 = fabs(k->cos_nutation_squared - 1.0);
-  if (!(shared_size_2 > 5e-10)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
-  }
   const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
   /* law of cosines for b (r33): 1 - cosine, times a scale */
   const double one_less_cos_b = -r33 < 0.0 ? -r13_squared_plus_r23_squared/(1.0 + fabs(r33)) : r33 - 1.0;
@@ -558,7 +550,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sin_nutation = sin(SOFTKIN_DEGREE*p->nutation);
   const double cos_nutation_squared = cos_nutation*cos_nutation;
   const double cos_nutation_times_sin_nutation = cos_nutation*sin_nutation;
-  const double shared_size = fabs(cos_nutation_squared - 1.0);
   const double pivot_length_times_cos_nutation_squared = p->pivot_length*cos_nutation*cos_nutation;
   const double one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0*cos_nutation*cos_nutation;
   const double product_in_joint_x = p->pivot_length*cos_nutation*sin_nutation;
@@ -591,7 +582,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sin_nutation = sin_nutation;
   made.cos_nutation_squared = cos_nutation_squared;
   made.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation;
-  made.shared_size = shared_size;
   made.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared;
   made.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2;
   made.product_in_joint_x = product_in_joint_x;

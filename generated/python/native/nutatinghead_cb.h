@@ -93,9 +93,8 @@ typedef struct {
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_c, highest_c, mid_c, lowest_b,
       highest_b, mid_b, fork_offset, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_c,
       offset_b, cos_nutation, sin_nutation, cos_nutation_squared, cos_nutation_times_sin_nutation,
-      shared_size, pivot_length_times_cos_nutation_squared, one_minus_cos_nutation_squared_times_2,
-      product_in_joint_x, cos_nutation_times_head_offset, pivot_length_times_sin_nutation,
-      head_offset_times_sin_nutation;
+      pivot_length_times_cos_nutation_squared, one_minus_cos_nutation_squared_times_2, product_in_joint_x,
+      cos_nutation_times_head_offset, pivot_length_times_sin_nutation, head_offset_times_sin_nutation;
   bool single_c, single_b;
 } nutatinghead_cb_machine;
 

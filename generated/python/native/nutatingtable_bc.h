@@ -93,7 +93,7 @@ typedef struct {
   softkin_ends ends[NUTATINGTABLE_BC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_b, highest_b, mid_b, lowest_c,
       highest_c, mid_c, pivot_x, pivot_z, tool_length, offset_x, offset_y, offset_z, offset_b, offset_c,
-      cos_nutation, sin_nutation, cos_nutation_times_sin_nutation, cos_nutation_squared, shared_size,
+      cos_nutation, sin_nutation, cos_nutation_times_sin_nutation, cos_nutation_squared,
       one_minus_cos_nutation_squared_times_2;
   bool single_b, single_c;
 } nutatingtable_bc_machine;

@@ -81,6 +81,7 @@ if TYPE_CHECKING:
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
     from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
+    from softkin.skewgantry3 import SkewGantry3
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
@@ -157,6 +158,7 @@ __all__ = [
     "Scara4ZCcoupledType1",
     "ScaraOnRail",
     "Singularity",
+    "SkewGantry3",
     "Solution",
     "Status",
     "TGantry2",
@@ -229,6 +231,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
     "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
+    "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),

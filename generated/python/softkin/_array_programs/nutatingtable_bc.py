@@ -31,7 +31,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 67
+    VALUES = 66
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -94,8 +94,6 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_b, ref_c, x, y, z), Status.BAD_INPUT)
-        # b: its effective length is too short
-        require(status, k.shared_size > 5e-10, Status.UNREACHABLE)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = select(-r33 < 0.0, -r13_squared_plus_r23_squared / (1.0 + absolute(r33)), r33 - 1.0)
