@@ -14,6 +14,7 @@
 #include "delta_c.h"
 #include "delta_p3c_type3.h"
 #include "dualscara.h"
+#include "excavator.h"
 #include "gantry2.h"
 #include "gantry3.h"
 #include "gantrycutter2.h"
@@ -41,6 +42,7 @@
 #include "polar.h"
 #include "polar_z.h"
 #include "pos_rrr.h"
+#include "rodpalletizer.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -50,6 +52,7 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "scissorlift.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -78,6 +81,8 @@ softkin_regular delta_p3c_type3_regular;
 softkin_regular_all delta_p3c_type3_regular_all;
 softkin_regular dualscara_regular;
 softkin_regular_all dualscara_regular_all;
+softkin_regular excavator_regular;
+softkin_regular_all excavator_regular_all;
 softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
@@ -132,6 +137,7 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular scissorlift_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -167,6 +173,7 @@ const softkin_native softkin_machines[] = {
     {"delta_p3c_type3 a4e0e109f9346d6d", &delta_p3c_type3_mechanism,
         {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
     {"dualscara 518a05ebb26d0c73", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
+    {"excavator a6681b058eaa33a1", &excavator_mechanism, {excavator_regular, excavator_regular_all}},
     {"gantry2 3c6edd1d7118e93d", &gantry2_mechanism, {gantry2_regular, NULL}},
     {"gantry3 9b8635e5f566e3b6", &gantry3_mechanism, {gantry3_regular, NULL}},
     {"gantrycutter2 5043f79761288349", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
@@ -199,6 +206,7 @@ const softkin_native softkin_machines[] = {
     {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z ac9610c84473bd12", &polar_z_mechanism, {polar_z_regular, NULL}},
     {"pos_rrr 5601d9cd2720ec64", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"rodpalletizer e1889874a996966f", &rodpalletizer_mechanism, {NULL, NULL}},
     {"scara2_z b37de2a39400f06c", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 33cf2d6b22d4e16b", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z f177072bc3d7d9c6", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
@@ -210,6 +218,7 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
+    {"scissorlift 1cb95c04d333b424", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
