@@ -59,6 +59,9 @@ class Inverse:
     frozen: tuple[Joint, ...] = ()
     checks: tuple[MachineCheck, ...] = ()
     """The checks on the machine, which do not depend on the pose."""
+    free: tuple[Let, ...] = ()
+    """The first statements of the derivation: a joint that the direction of the tool determines where the position
+    does not. They read the signs of steps."""
 
     @property
     def known(self) -> tuple[Statement, ...]:
@@ -76,14 +79,16 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure, held = pose_closure(mechanism), mechanism.held_joints
     derivation = _solve(mechanism, closure, mechanism.solved_joints)
+    free: tuple[Let, ...] = ()
     if mechanism.followed_turns:
-        lets, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
-        derivation = replace(derivation, statements=(*lets, *with_refusal(derivation.statements)))
+        free, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
+        derivation = replace(derivation, statements=(*free, *with_refusal(derivation.statements)))
     kept = tuple(s for j in held for s in frozen_lets(j))
     before = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism))
     naming = (*before, *passive_statements(mechanism), *closure.lets)
     statements, checks = apart(derivation.statements, fixed_names(mechanism))
-    return Inverse(closure, replace(derivation, statements=statements), naming, mechanism.solved_joints, held, checks)
+    derivation = replace(derivation, statements=statements)
+    return Inverse(closure, derivation, naming, mechanism.solved_joints, held, checks, free)
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:

@@ -156,7 +156,7 @@ def _tried(mechanism: Mechanism) -> int:
     """How many axis values of a machine are tried."""
     if mechanism.is_platform:
         return _NEAR_CANDIDATES if mechanism.branches else _CANDIDATES
-    return _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
+    return _LOOP_CANDIDATES if mechanism.rods or mechanism.drives else _CANDIDATES
 
 
 def jacobian_of(closure: Closure, samples: Samples) -> Array:

@@ -18,6 +18,7 @@ from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.grid import grid
 from tests.machines.made import Array, made
 from tests.machines.subset_machines import A1, LOOPS, SUBSETS
+from tests.random_axes import random_axes
 from tests.text.controller import OK, UNREACHABLE, Controller
 
 UPRIGHT = ("arm in an upright plane", "arm on a wall that leans", "arm in an upright plane that points its tool")
@@ -48,7 +49,7 @@ def test_a_loop_closes_in_both_languages(name: str) -> None:
     robot, controller = loop(name)
     mechanism = LOOPS[name]
     closed = 0
-    for axes in np.random.default_rng(2).uniform(-180.0, 180.0, (60, len(mechanism.joints))):
+    for axes in random_axes(robot, 60, np.random.default_rng(2), 180.0, 180.0):
         there = forward_in_both(controller, robot, axes.tolist(), 1.0)
         if there is None:
             continue
@@ -68,7 +69,7 @@ def test_the_jacobian_of_a_loop_is_that_of_its_differences(name: str) -> None:
     robot, _ = loop(name)
     count, step = len(LOOPS[name].joints), 1e-4
     compared = 0
-    for axes in np.random.default_rng(4).uniform(-60.0, 60.0, (20, count)):
+    for axes in random_axes(robot, 20, np.random.default_rng(4), 60.0, 60.0):
         try:
             given = robot.jacobian(axes)
             ends = [[robot.forward(axes + s * step * e)[0].position for s in (-1, 1)] for e in np.eye(count)]

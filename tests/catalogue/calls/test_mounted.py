@@ -148,14 +148,16 @@ def test_names_and_lines(name: str) -> None:
         assert made.names(configuration) == robot.names(configuration) == made.in_radians().names(configuration)
         named = {key.replace(" ", "_"): value for key, value in made.names(configuration).items()}
         assert made.configuration(**named) == robot.configuration(**named) == configuration
-        goal = made.forward([a if i in robot.HELD else a + 2.0 for i, a in enumerate(axes)])[0]
+        beside = [[a if i in robot.HELD else a + step for i, a in enumerate(axes)] for step in (2.0, -2.0)]
+        goal = made.forward(beside[np.argmax(made.forward_batch(beside)[3] == Status.OK)])[0]
         line = made.line(frame.matrix, goal, configuration, axes, samples=3)
         assert line.axes and apart(line.axes[0], axes) < 1e-5 * size
         start, end = np.array(frame.position), np.array(goal.position)
+        met = 1e-8 if {"x", "y", "z"} <= {*robot.JACOBIAN_ROWS} else 1e-6  # outside the task it is tolerated
         for place, own, reached in zip(line.places, line.axes, line.frames, strict=True):
             assert apart(reached.position, start + place * (end - start)) < 1e-9 * (size + 1000.0)
             if robot.ROLE != "orientation" and not isinstance(robot, IterativeForward):
-                assert apart(made.forward(own)[0].position, reached.position) < 1e-8 * (size + 1000.0)
+                assert apart(made.forward(own)[0].position, reached.position) < met * (size + 1000.0)
         other = made.in_radians().line(frame, goal, configuration, radian(robot, axes), samples=3)
         assert bool(other) == bool(line) and apart(other.places, line.places) < 1e-6
         for own, same in zip(line.axes, other.axes, strict=True):

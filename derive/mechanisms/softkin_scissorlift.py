@@ -1,4 +1,4 @@
-"""ScissorLift: a lifting table on scissors, whose lower rollers a horizontal cylinder moves; a table turns."""
+"""Softkin_ScissorLift: a lifting table on scissors, whose lower rollers a horizontal cylinder moves; a table turns."""
 
 from derive.frames import Rz, Tx, Tz
 from derive.mechanism import Mechanism, Task, Turning, Vendor, distance, driven, length, linear, rotary
@@ -11,7 +11,7 @@ S1 = linear("S1", "Cylinder: fixed lower pin to the rollers", nominal=1385.6)
 A2 = rotary("A2", "Table about Z")
 
 MECHANISM = Mechanism(
-    name="ScissorLift",
+    name="Softkin_ScissorLift",
     vendor=Vendor.TEXTBOOK,
     family="gantry",
     source="scissor lifting tables with a turntable",

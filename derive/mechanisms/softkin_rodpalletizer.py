@@ -1,4 +1,4 @@
-"""RodPalletizer: a palletizer whose rear arm a cylinder moves, and whose forearm a crank with a rod."""
+"""Softkin_RodPalletizer: a palletizer whose rear arm a cylinder moves, and whose forearm a crank with a rod."""
 
 from sympy import cos, sin
 
@@ -44,7 +44,7 @@ A4 = rotary("A4", "Flange about Z")
 OUT = BESIDE + L1 * sin(REAR) + L2 * cos(FOREARM) + WRIST
 
 MECHANISM = Mechanism(
-    name="RodPalletizer",
+    name="Softkin_RodPalletizer",
     vendor=Vendor.TEXTBOOK,
     family="articulated",
     source="palletizing robots with linear drives and rods",

@@ -1,4 +1,4 @@
-"""Excavator: swing, boom, stick and bucket; cylinders move the last three, the bucket over a four-bar."""
+"""Softkin_Excavator: swing, boom, stick and bucket; cylinders move the last three, the bucket over a four-bar."""
 
 from sympy import cos, sin
 
@@ -55,7 +55,7 @@ TURNED = BOOM_ANGLE + STICK_ANGLE
 OUT = FORWARD + BOOM * cos(BOOM_ANGLE) + STICK * cos(TURNED) + BUCKET * cos(TURNED + BUCKET_ANGLE)
 
 MECHANISM = Mechanism(
-    name="Excavator",
+    name="Softkin_Excavator",
     vendor=Vendor.TEXTBOOK,
     family="articulated",
     source="backhoe excavators: boom, stick and bucket",
