@@ -17,6 +17,7 @@ from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import OFFSET, real
+from derive.kinematics.bias import bias_programs
 from derive.kinematics.branches.assembly import Assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.bundle import bundle_of
@@ -94,6 +95,7 @@ def _closed_form(solved: Solved) -> Kinematics:
     programs += _further_programs(mechanism, closed, inverse)
     if mechanism.nominal:
         programs = measured_programs(Measured(mechanism, machine, forward_only, margins, doubts), programs)
+    programs += bias_programs(mechanism, programs, forward)
     return bundle_of(solved, programs, kept, at_home)
 
 
@@ -146,6 +148,7 @@ def _scanned(both: Scanned) -> Kinematics:
         projection_program(mechanism),
         *([twist_program(mechanism, both.forward)] if needs_twist(mechanism) else []),
     ]
+    programs += bias_programs(mechanism, programs, both.forward)
     finished = bundle_of(both, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
     return replace(finished, tried_branches=len(both.trial_branches))
 

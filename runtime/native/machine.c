@@ -27,7 +27,7 @@ typedef struct {
   PyObject *array;                        /* the class of arrays, once NumPy is there */
 } machine_object;
 
-enum { SLOTS_ON_STACK = 16, SOFTKIN_MOST_ROWS = 24, SOFTKIN_MOST_MARGINS = 64 };
+enum { SLOTS_ON_STACK = 16 };
 
 /* ---- from Python ---- */
 

@@ -37,7 +37,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"
-MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED = 24, 12, 6, 10
+MOST_AXES, MOST_BRANCHES, MOST_DIRECTIONS, MOST_LISTED, MOST_ROWS, MOST_MARGINS = 24, 12, 6, 10, 6, 64
 bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
@@ -90,6 +90,7 @@ def _fits(kin: Kinematics) -> bool:
     found = [search for program in kin.shared for search in searches(program)]
     given = () if kin.search_given is None else kin.search_given.outputs
     sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), 2 * MOST_AXES)]
+    sizes += [(len(kin.margins), MOST_MARGINS)]
     sizes += [(directions_of(search), MOST_DIRECTIONS) for search in found]
     sizes += [(len(search.sides), MOST_LISTED) for search in found]
     sizes += [(len(search.names), MOST_AXES + 1) for search in found]
@@ -109,6 +110,8 @@ def _templates() -> Environment:
         "no_meaning": NO_MEANING,
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
+        "most_rows": MOST_ROWS,
+        "most_margins": MOST_MARGINS,
         "most_directions": MOST_DIRECTIONS,
         "most_listed": MOST_LISTED,
         "most_together": MOST_SLOTS,

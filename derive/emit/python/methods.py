@@ -9,6 +9,7 @@ from derive.emit import interface as of
 from derive.emit.interface import POSITION, ROTATION, Arrays, Entry, Shape
 from derive.emit.python.program import Argument, Method
 from derive.ir.program import Program
+from derive.kinematics.bias import bias_names
 from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
@@ -27,11 +28,14 @@ _KINDS = {
 _EXPLAINED = ("branch", "limits", "offset_branch")
 """The programs that refuse with a reason."""
 _ORDER = """
-    search_given from_joints forward orientation branch limits singularity jacobian twist quantities image compatible
-    end_point_shift total_image projection offset_branch offset_margins
+    search_given from_joints forward orientation branch limits singularity jacobian twist bias twist_bias quantities
+    image compatible end_point_shift total_image projection offset_branch offset_margins
 """.split()
 """The order of their use."""
-_ON_ARRAYS = ("forward", "branch", "limits", "singularity", "jacobian", "twist", "projection", "end_point_shift")
+_ON_ARRAYS = (
+    "forward", "branch", "limits", "singularity", "jacobian", "twist", "bias", "twist_bias", "projection",
+    "end_point_shift",
+)  # fmt: skip
 """The programs that there are on arrays, too."""
 
 
@@ -51,7 +55,7 @@ def named(kin: Kinematics) -> dict[str, Method]:
     """The methods by their names, without those of shared programs."""
     found = {key: _method(entry) for key, entry in of.entries(kin).items()}
     if rows_of_twist(kin):  # the Jacobian consists of rows of the twist
-        del found["jacobian"]
+        del found["jacobian"], found["bias"]
     return found | {method.name: method for method in _further(kin)}
 
 
@@ -72,6 +76,8 @@ def _further(kin: Kinematics) -> Iterator[Method]:
     rows: tuple[tuple[str, str, Program | None, tuple[Argument, ...], str, Shape], ...] = (
         ("orientation", "The rotation of the frame.", kin.orientation, axes, "Rotation", ROTATION),
         ("twist", "The twist of the frame by rows, per radian.", kin.twist, axes, "Matrix", twist),
+        ("twist_bias", "The acceleration of the twist where the axes keep their speeds, per radian.", kin.twist_bias,
+         (*axes, *_arguments(of.speeds_of(kin))), "Reals", bias_names(TWIST_ROWS)),
         ("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
         ("compatible", "Whether a flange that turns can carry this mechanism.", kin.compatible, _ON_FLANGE[:1], "", ()),
         ("end_point_shift", "The vector from a flange that turns to the end point.", kin.end_point_shift, on_flange,

@@ -22,7 +22,7 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
 from derive.ir.program import Program
-from derive.ir.symbols import START_POSITION
+from derive.ir.symbols import COORDINATE_NAMES, START_POSITION
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
@@ -182,7 +182,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         turning=mechanism.task.turning.value,
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
-        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row.startswith("turn")),
+        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row not in COORDINATE_NAMES),
         margins=tuple(m.name for m in kinematics.margins),
         computed=_computed(kinematics),
         tie="" if chooses_by_lengths(mechanism) or not kinematics.branches else literal(float(TIE)),
@@ -235,6 +235,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.limits,
         kinematics.singularity,
         kinematics.jacobian,
+        kinematics.bias,
         kinematics.image,
         kinematics.projection,
         offset_branch_of(kinematics),

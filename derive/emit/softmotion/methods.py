@@ -38,6 +38,7 @@ _FIRST = (
     "TestLimits",
     "ReasonOf",
     "FindJacobian",
+    "FindBias",
     "FindMargins",
     "FindOrientation",
     "FindImage",
@@ -79,6 +80,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     spelled = {name: stored_as(kinematics, name) for name in constants(kinematics)}
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
+        spelled[joint.speed.name] = f"aSpeeds[{index}]"
         spelled[joint.reference.name] = f"aRef.a{index}"
     for axis in "xyz":
         spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = (
@@ -124,6 +126,7 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
         "FindProjection": kinematics.projection,
         "FindOffsetBranches": of_axes(kinematics.offset_configuration),
         "FindJacobian": of_axes(kinematics.jacobian),
+        "FindBias": of_axes(kinematics.bias),
         "IsCompatibleWithPosKin": kinematics.compatible,
         "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,

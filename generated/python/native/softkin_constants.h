@@ -8,6 +8,8 @@
 /** The largest numbers of axes and of branches that a machine may have in C. */
 #define SOFTKIN_MOST_AXES 24
 #define SOFTKIN_MOST_BRANCHES 12
+#define SOFTKIN_MOST_ROWS 6
+#define SOFTKIN_MOST_MARGINS 64
 /** The largest number of slots of a machine whose branches are computed together. */
 #define SOFTKIN_MOST_TOGETHER 16
 /* Of a root scan. */

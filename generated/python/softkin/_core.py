@@ -590,6 +590,98 @@ class Mechanism(Value, ABC):
 
         return _velocities.axis_velocities(self, axes, twist, held, damping, length)
 
+    def twist_rate(self, axes: Numbers, velocities: Numbers, accelerations: Numbers) -> Reals:
+        """The acceleration of the frame: the rate of `twist`, row by row, J a + J' v.
+
+        velocities, accelerations: one for each axis, of `HELD` axes too, in the units of `twist`. Raises the errors of
+        `jacobian`, and BAD_INPUT for invalid numbers.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.twist_rate(self, axes, velocities, accelerations)
+
+    def axis_accelerations(
+        self,
+        axes: Numbers,
+        velocities: Numbers,
+        twist_rate: Numbers,
+        *,
+        held: Numbers | None = None,
+        damping: float = 0.0,
+        length: float | None = None,
+    ) -> Reals:
+        """The accelerations of all axes that give the frame an acceleration: the inverse of `twist_rate`, in its units.
+
+        velocities: those that the axes have, as `axis_velocities` finds them. twist_rate: one number for each of
+        `JACOBIAN_ROWS`; zeros on a straight line at constant speed. held: the accelerations of the axes of `HELD`.
+        damping, length and the errors are those of `axis_velocities`.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_accelerations(self, axes, velocities, twist_rate, held, damping, length)
+
+    def largest_feed(
+        self,
+        axes: Numbers,
+        twist: Numbers,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rate: Numbers | None = None,
+    ) -> float:
+        """The largest constant speed along a path that the limits of the axes allow at a pose; infinite without limits.
+
+        twist: that of the frame at speed 1: for a feed in lengths per time, x, y and z are a vector of length 1.
+        velocities, accelerations: the largest size that each may have, one positive number for each axis, in radians
+        per time for an axis in degrees; None for no limit. twist_rate: the rate of the twist at speed 1, which is the
+        curvature of the path; None for a straight line. Axes of `HELD` do not move.
+        Raises the errors of `axis_velocities`, and BAD_INPUT for limits that are not positive.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.largest_feed(self, axes, twist, twist_rate, (velocities, accelerations))
+
+    def axis_velocities_batch(
+        self, axes: ArrayLike, twists: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`axis_velocities` of N rows: axes (N, n), twists (N, rows) → velocities (N, n), statuses (N,).
+
+        Without damping; axes of `HELD` do not move. A row whose status is not OK holds NaN: singular poses are
+        IMPOSSIBLE. Raises BAD_INPUT for a wrong shape.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_velocities_batch(self, self._array_programs(), axes, twists)
+
+    def axis_accelerations_batch(
+        self, axes: ArrayLike, velocities: ArrayLike, twist_rates: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`axis_accelerations` of N rows: axes (N, n), velocities (N, n), twist rates (N, rows) → accelerations (N, n),
+        statuses (N,), as in `axis_velocities_batch`.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_accelerations_batch(self, self._array_programs(), axes, velocities, twist_rates)
+
+    def largest_feed_batch(
+        self,
+        axes: ArrayLike,
+        twists: ArrayLike,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rates: ArrayLike | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`largest_feed` of N rows: axes (N, n), twists (N, rows), twist rates (N, rows) → speeds (N,), statuses (N,).
+
+        The limits are the same for all rows. A row whose status is not OK holds NaN. Raises BAD_INPUT for a wrong
+        shape.
+        """
+        from softkin import _accelerations
+
+        limits = velocities, accelerations
+        return _accelerations.largest_feed_batch(self, self._array_programs(), axes, twists, twist_rates, limits)
+
     def condition(self, axes: Numbers, length: float | None = None) -> float:
         """The condition number of the Jacobian: at least 1, and infinite where the pose is singular to all digits.
 
@@ -959,6 +1051,19 @@ class Mechanism(Value, ABC):
             return rows
         known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
         return tuple(known.get(row, (0.0,) * len(axes)) for row in TWIST)
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian at constant speeds of the axes."""
+        rows = self._twist_bias(axes, speeds)
+        return rows if isinstance(rows, Status) else tuple(rows[TWIST.index(row)] for row in self.JACOBIAN_ROWS)
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The same of the six rows of the twist."""
+        rows = self._bias(axes, speeds)
+        if isinstance(rows, Status):
+            return rows
+        known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
+        return tuple(known.get(row, 0.0) for row in TWIST)
 
     def _turns_unseen(self) -> bool:
         """Whether the Jacobian lacks rows of the twist that are not zero."""

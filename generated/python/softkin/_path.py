@@ -101,12 +101,12 @@ class Path:
         found = []
         last = self.places[-1] if self.places else 0.0
         for place, axes in zip(self.places, self.axes, strict=True):
-            line = min(max(_line(place), 0), max(len(self.corners) - 2, 0))
+            line = min(max(line_of(place), 0), max(len(self.corners) - 2, 0))
             first, second = max(place - _APART, float(line)), min(place + _APART, line + 1.0, last)
             if not second > first:
                 found.append((0.0,) * len(axes))
                 continue
-            before, behind = (_solved(self, at, axes) for at in (first, second))
+            before, behind = (solved(self, at, axes) for at in (first, second))
             if isinstance(before, Diagnosis) or isinstance(behind, Diagnosis):
                 found.append(tuple([float("nan")] * len(axes)))
                 continue
@@ -114,13 +114,26 @@ class Path:
             found.append(tuple([(b - a) / time for a, b in zip(before, behind, strict=True)]))
         return tuple(found)
 
+    def feeds(self, velocities: Numbers | None = None, accelerations: Numbers | None = None) -> Reals:
+        """The largest constant speed of the tool that the limits of the axes allow at every sample.
+
+        velocities, accelerations: the largest size that each may have, one positive number for each axis, per second in
+        the unit of the axis; None for no limit. The speed is in lengths a second, of a line that only turns in degrees
+        a second; the smallest one is what the whole path may be driven with. Infinite where no axis moves or no limit
+        is given, NaN where the way before and behind is not free. At a corner the speed on the line that ends there.
+        Raises BAD_INPUT for limits that are not positive.
+        """
+        from softkin import _feeds
+
+        return _feeds.along(self, velocities, accelerations)
+
     def fastest(self, duration: float = 1.0) -> Reals:
         """The highest speed of each axis at the samples, as a positive number: see `velocities`."""
         columns = zip(*self.velocities(duration), strict=True)
         return tuple([max(map(abs, column)) for column in columns])
 
 
-def _line(place: float) -> int:
+def line_of(place: float) -> int:
     """The number of the line at a place; a corner belongs to the line that ends there."""
     whole = floor(place)
     return whole - 1 if whole == place and whole > 0 else whole
@@ -131,7 +144,7 @@ def _frame(corners: Sequence[Frame], place: float) -> Frame:
     return corners[0] if line < 0 else between(corners[line], corners[line + 1], place - line)
 
 
-def _solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
+def solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
     return _Follower(path.robot, path.corners, path.signs).solve(place, near)
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import DEGREE, cos, sin
 from softkin._types import Axis, Rotation, Vector
-from softkin._vectors import plus, product, turned
+from softkin._vectors import cross, plus, product, rates, turned
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -127,6 +127,27 @@ def columns(chain: Chain, lines: Sequence[Placed], place: Vector, count: int) ->
         for i, share in joint.motors:
             found[i] = [total + share * part for total, part in zip(found[i], twist, strict=True)]
     return found
+
+
+def bias(chain: Chain, lines: Sequence[Placed], place: Vector, speeds: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The acceleration of a point that moves with the tool, and that of the tool's turn, at constant speeds of motors.
+
+    Every column of `columns` has a rate: its line moves with the joints before it, and the point with all of them.
+    """
+    found = columns(chain, lines, place, len(speeds))
+    rows = tuple(zip(*found, strict=True)) if found else ((),) * 6
+    moving, spin, shift, whole = rates(rows[:3], speeds), ORIGIN, ORIGIN, (ORIGIN, ORIGIN)
+    for joint, (origin, rotation) in zip(chain.joints, lines, strict=True):
+        along = rotation[0][2], rotation[1][2], rotation[2][2]
+        speed = sum(share * speeds[i] for i, share in joint.motors)
+        swung, carried = cross(spin, along), plus(shift, cross(spin, origin))
+        if joint.turns:
+            way = plus(cross(swung, plus(place, origin, -1.0)), cross(along, plus(moving, carried, -1.0)))
+            whole = plus(whole[0], way, speed), plus(whole[1], swung, speed)
+            spin, shift = plus(spin, along, speed), plus(shift, cross(origin, along), speed)
+        else:
+            whole, shift = (plus(whole[0], swung, speed), whole[1]), plus(shift, along, speed)
+    return (*whole[0], *whole[1])
 
 
 def placed(first: Placed, second: Placed) -> Placed:
