@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
+.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view docs prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -48,6 +48,10 @@ clang: c
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)
 	$(RUN) -m derive view $(MECHANISM) --out $(OUT)
+
+# The site: guides, gallery, a page for each machine, the API. It opens from disk: build/docs/html/index.html. A broken link fails.
+docs: $(READY)
+	PYTHONPATH=generated/python $(RUN) docs/site/build.py build/docs
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
