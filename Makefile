@@ -81,12 +81,13 @@ bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
 
-# Two wheels into dist/: one with the native core, for every CPython from 3.11 on with an old enough C library, as auditwheel
-# finds it; one without, for all other Pythons, free-threaded ones among them.
-wheel: $(WHEEL)/ready
+# Two wheels into dist/, with the page of the viewer: one with the native core, for every CPython from 3.11 on with an old
+# enough C library, as auditwheel finds it; one without, for all other Pythons, free-threaded ones among them.
+wheel: $(WHEEL)/ready view
 	rm -rf build/wheel
 	mkdir -p build/wheel
 	cp -r generated/python build/wheel/source
+	cp $(OUT)/viewer.html build/wheel/source/softkin/_viewer.html
 	$(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/wheel build/wheel/source
 	rm -rf build/wheel/source/build
 	SOFTKIN_PURE=1 $(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist build/wheel/source

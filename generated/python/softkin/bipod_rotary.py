@@ -82,10 +82,10 @@ class Constants:
         one_by_outer_arm_squared = 1.0 / (outer_arm * outer_arm)
         twice_inner_arm = 2.0 * inner_arm
         sum_in_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
-        self.inner_arm, self.offset_a1, self.offset_a2 = inner_arm, offset_a1, offset_a2
-        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
-        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
-        self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
+        self.inner_arm, self.displacement, self.tcp_displacement = inner_arm, displacement, tcp_displacement
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.assembly_sign, self.product_in_normal_divisor = assembly_sign, product_in_normal_divisor
+        self.twice_outer_arm, self.outer_arm_squared_times_rounding = twice_outer_arm, outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
@@ -164,6 +164,7 @@ class BipodRotary(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((4, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     inner_arm: float
@@ -666,6 +667,42 @@ class BipodRotary(OffsetKinematics):
         span_2_x = flange_x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         branch_knee_2 = -one_by_outer_arm * (flange_y * cos_a2 + span_2_x * sin_a2)
         return (branch_knee_1, branch_knee_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        displacement, inner_arm, offset_a1, offset_a2 = k.displacement, k.inner_arm, k.offset_a1, k.offset_a2
+        tcp_displacement = k.tcp_displacement
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            -displacement - cos(a1) * inner_arm,
+            -inner_arm * sin(a1),
+            0.0,
+            x - tcp_displacement,
+            y,
+            0.0,
+            displacement + cos(a2) * inner_arm,
+            -inner_arm * sin(a2),
+            0.0,
+            tcp_displacement + x,
+            y,
+            0.0,
+            -displacement,
+            0.0,
+            0.0,
+            inner_arm * sin(a1) - displacement,
+            -cos(a1) * inner_arm,
+            0.0,
+            displacement,
+            0.0,
+            0.0,
+            displacement - inner_arm * sin(a2),
+            -cos(a2) * inner_arm,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

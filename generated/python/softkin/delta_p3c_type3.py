@@ -201,6 +201,7 @@ class Constants:
         cos_azimuth_2_times_inner_arm_2_times_2 = 2.0 * inner_arm_2 * cos_azimuth_2
         inner_arm_3_times_sin_azimuth_3_times_2 = 2.0 * inner_arm_3 * sin_azimuth_3
         cos_azimuth_3_times_inner_arm_3_times_2 = 2.0 * inner_arm_3 * cos_azimuth_3
+        self.azimuth_1, self.azimuth_2, self.azimuth_3 = azimuth_1, azimuth_2, azimuth_3
         self.base_radius_1, self.base_radius_2, self.base_radius_3 = base_radius_1, base_radius_2, base_radius_3
         self.inner_arm_1, self.inner_arm_2, self.inner_arm_3 = inner_arm_1, inner_arm_2, inner_arm_3
         self.outer_arm_1, self.outer_arm_2, self.outer_arm_3 = outer_arm_1, outer_arm_2, outer_arm_3
@@ -335,6 +336,17 @@ class DeltaP3CType3(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (6, 0, "A1"),
+        (8, 2, "A2"),
+        (10, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     azimuth_1: float
@@ -1364,6 +1376,64 @@ class DeltaP3CType3(OffsetKinematics):
             flange_z * cos_a3 + (span_3_x * cos_azimuth_3 + span_3_y * sin_azimuth_3) * sin_a3
         )
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        azimuth_1, azimuth_2, azimuth_3, base_radius_1 = k.azimuth_1, k.azimuth_2, k.azimuth_3, k.base_radius_1
+        base_radius_2, base_radius_3, inner_arm_1 = k.base_radius_2, k.base_radius_3, k.inner_arm_1
+        inner_arm_2, inner_arm_3, offset_a1, offset_a2 = k.inner_arm_2, k.inner_arm_3, k.offset_a1, k.offset_a2
+        offset_a3, tcp_radius_1, tcp_radius_2 = k.offset_a3, k.tcp_radius_1, k.tcp_radius_2
+        tcp_radius_3 = k.tcp_radius_3
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            (base_radius_1 + cos(a1) * inner_arm_1) * cos(DEGREE * azimuth_1),
+            (base_radius_1 + cos(a1) * inner_arm_1) * sin(DEGREE * azimuth_1),
+            -inner_arm_1 * sin(a1),
+            x + cos(DEGREE * azimuth_1) * tcp_radius_1,
+            y + sin(DEGREE * azimuth_1) * tcp_radius_1,
+            z,
+            (base_radius_2 + cos(a2) * inner_arm_2) * cos(DEGREE * azimuth_2),
+            (base_radius_2 + cos(a2) * inner_arm_2) * sin(DEGREE * azimuth_2),
+            -inner_arm_2 * sin(a2),
+            x + cos(DEGREE * azimuth_2) * tcp_radius_2,
+            y + sin(DEGREE * azimuth_2) * tcp_radius_2,
+            z,
+            (base_radius_3 + cos(a3) * inner_arm_3) * cos(DEGREE * azimuth_3),
+            (base_radius_3 + cos(a3) * inner_arm_3) * sin(DEGREE * azimuth_3),
+            -inner_arm_3 * sin(a3),
+            x + cos(DEGREE * azimuth_3) * tcp_radius_3,
+            y + sin(DEGREE * azimuth_3) * tcp_radius_3,
+            z,
+            0.5 * (base_radius_1 - cos(a1) * inner_arm_1) * cos(DEGREE * azimuth_1)
+            + 0.5 * (base_radius_1 + cos(a1) * inner_arm_1) * cos(DEGREE * azimuth_1),
+            0.5 * (base_radius_1 - cos(a1) * inner_arm_1) * sin(DEGREE * azimuth_1)
+            + 0.5 * (base_radius_1 + cos(a1) * inner_arm_1) * sin(DEGREE * azimuth_1),
+            0.0,
+            (base_radius_1 - inner_arm_1 * sin(a1)) * cos(DEGREE * azimuth_1),
+            (base_radius_1 - inner_arm_1 * sin(a1)) * sin(DEGREE * azimuth_1),
+            -cos(a1) * inner_arm_1,
+            0.5 * (base_radius_2 - cos(a2) * inner_arm_2) * cos(DEGREE * azimuth_2)
+            + 0.5 * (base_radius_2 + cos(a2) * inner_arm_2) * cos(DEGREE * azimuth_2),
+            0.5 * (base_radius_2 - cos(a2) * inner_arm_2) * sin(DEGREE * azimuth_2)
+            + 0.5 * (base_radius_2 + cos(a2) * inner_arm_2) * sin(DEGREE * azimuth_2),
+            0.0,
+            (base_radius_2 - inner_arm_2 * sin(a2)) * cos(DEGREE * azimuth_2),
+            (base_radius_2 - inner_arm_2 * sin(a2)) * sin(DEGREE * azimuth_2),
+            -cos(a2) * inner_arm_2,
+            0.5 * (base_radius_3 - cos(a3) * inner_arm_3) * cos(DEGREE * azimuth_3)
+            + 0.5 * (base_radius_3 + cos(a3) * inner_arm_3) * cos(DEGREE * azimuth_3),
+            0.5 * (base_radius_3 - cos(a3) * inner_arm_3) * sin(DEGREE * azimuth_3)
+            + 0.5 * (base_radius_3 + cos(a3) * inner_arm_3) * sin(DEGREE * azimuth_3),
+            0.0,
+            (base_radius_3 - inner_arm_3 * sin(a3)) * cos(DEGREE * azimuth_3),
+            (base_radius_3 - inner_arm_3 * sin(a3)) * sin(DEGREE * azimuth_3),
+            -cos(a3) * inner_arm_3,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -129,8 +129,8 @@ class Constants:
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
         product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
         twice_link_length_5 = 2.0 * link_length_5
-        self.link_length_1, self.link_length_2, self.link_length_5 = link_length_1, link_length_2, link_length_5
-        self.swap_xy, self.offset_a1, self.offset_a2 = swap_xy, offset_a1, offset_a2
+        self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
+        self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
@@ -219,6 +219,7 @@ class KinType12XY(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((4, 0, "A1"), (4, 0, "A1"), (4, 3, "A2"), (0, 1, ""), (0, 2, ""), (3, 2, ""), (1, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float
@@ -932,6 +933,41 @@ class KinType12XY(OffsetKinematics):
             + (product_in_branch_crank * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         )
         return (branch_elbow, branch_crank)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        link_length_5, offset_a1, offset_a2, swap_xy = k.link_length_5, k.offset_a1, k.offset_a2, k.swap_xy
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            -link_length_1 * sin(a1),
+            -cos(a1) * link_length_1,
+            0.0,
+            (y if swap_xy else x),
+            (x if swap_xy else y),
+            0.0,
+            -(1.0 + link_length_3 / link_length_2) * link_length_1 * sin(a1)
+            - (y if swap_xy else x) * link_length_3 / link_length_2,
+            -(1.0 + link_length_3 / link_length_2) * cos(a1) * link_length_1
+            - (x if swap_xy else y) * link_length_3 / link_length_2,
+            0.0,
+            -cos(a2) * link_length_5,
+            link_length_5 * sin(a2),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            -cos(a1) * link_length_1,
+            link_length_1 * sin(a1),
+            0.0,
+            link_length_5 * sin(a2),
+            cos(a2) * link_length_5,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
