@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view docs prove-linuxcnc
+.PHONY: generate flat check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu view docs prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -81,6 +81,11 @@ bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
 
+# The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md.
+peers: $(READY) $(BENCH)/peers
+	$(RUN) -m tests.native.build
+	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.peers
+
 # Two wheels into dist/, with the page of the viewer: one with the native core, for every CPython from 3.11 on with an old
 # enough C library, as auditwheel finds it; one without, for all other Pythons, free-threaded ones among them.
 wheel: $(WHEEL)/ready view
@@ -107,6 +112,10 @@ prove-linuxcnc: $(READY)
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)
 	$(BENCH)/bin/python -m pip install --quiet --requirement bench/requirements.txt
+	touch $@
+
+$(BENCH)/peers: bench/peers.txt $(BENCH)/ready
+	$(BENCH)/bin/python -m pip install --quiet --requirement bench/peers.txt
 	touch $@
 
 $(READY): pyproject.toml setup.py

@@ -27,7 +27,7 @@ BLOCKS = Path("generated/st")
 GUIDES = {
     "Use a robot": ("PYTHON", "GALLERY", "CALIBRATION", "CODESYS", "LINUXCNC", "C", "JAVASCRIPT", "FMI"),
     "Describe your own": ("OWN_MACHINE", "IMPORT", "VIEWER", "LIVE"),
-    "Read on": ("MECHANISMS", "PROOF", "SPEED", "COMPILER"),
+    "Read on": ("MECHANISMS", "PROOF", "SPEED", "COMPARE", "COMPILER"),
 }
 HEADING = re.compile(r"^(\w[^:\n]*):\n((?:    .*\n?)+)", re.MULTILINE)
 """A heading of the docstring of a module, and the lines that stand below it."""

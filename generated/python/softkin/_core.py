@@ -53,6 +53,7 @@ from softkin._types import (
     Vector,
 )
 from softkin._value import Value
+from softkin._vectors import turn_between
 
 if TYPE_CHECKING:
     import numpy as np
@@ -370,7 +371,8 @@ class Mechanism(Value, ABC):
 
         Where the configuration leaves branches open and none has a solution, the reason is that of the first branch.
         Where the turn of an axis is beyond its limits and another turn is not, `turn` is the number of the other one:
-        with it in the period byte, the call succeeds if nothing else refuses.
+        with it in the period byte, the call succeeds if nothing else refuses. Where nothing refuses, `projection` is
+        the angle by which the commanded rotation was changed, because the machine cannot take it.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -384,7 +386,11 @@ class Mechanism(Value, ABC):
         axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
         if isinstance(axes, Diagnosis):
             return axes
-        return self._beyond_limits(axes) or Diagnosis(Status.OK, "", 0.0)
+        if (refused := self._beyond_limits(axes)) is not None:
+            return refused
+        reached = self._started(position, rotation)._orientation(axes) if self.READS_ROTATION else rotation
+        turn = 0.0 if isinstance(reached, Status) else self._full_turn() * turn_between(rotation, reached)
+        return Diagnosis(Status.OK, "", 0.0, projection=turn)
 
     def nearest(
         self, frame: FrameLike, reference: Numbers, *, weights: Numbers | None = None, measure: Measure = "squares"
