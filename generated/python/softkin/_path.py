@@ -24,6 +24,8 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from softkin._core import Mechanism
     from softkin._timed import Timed
 
@@ -81,6 +83,14 @@ class Path:
     def __bool__(self) -> bool:
         """Whether it reaches its last frame."""
         return self.stop is None
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """The axis values of every sample (N, n)."""
+        import numpy as np
+
+        if copy is False:
+            raise ValueError("a path is no array: its axis values are a copy")
+        return np.array(self.axes, dtype or np.float64)
 
     def __repr__(self) -> str:
         """The machine, the number of samples, and where the path stops."""

@@ -74,6 +74,7 @@ def test_a_plot_shows_the_lines_and_the_values() -> None:
     path = arm.line(frame, frame.shifted(2000.0), None, axes, samples=20)
     graph = path.plot()
     assert np.allclose(np.array([line.get_ydata() for line in graph.lines[:6]]).T, path.axes)
+    assert np.array_equal(np.asarray(path), path.axes)
     assert path.stop is not None and path.stop.refusal.in_words in graph.get_title()
 
 
