@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
+.PHONY: generate flat check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu view docs prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -49,6 +49,10 @@ clang: c
 view: $(READY)
 	$(RUN) -m derive view $(MECHANISM) --out $(OUT)
 
+# The site: guides, gallery, a page for each machine, the API. It opens from disk: build/docs/html/index.html. A broken link fails.
+docs: $(READY)
+	PYTHONPATH=generated/python $(RUN) docs/site/build.py build/docs
+
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
@@ -77,12 +81,18 @@ bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
 
-# Two wheels into dist/: one with the native core, for every CPython from 3.11 on with an old enough C library, as auditwheel
-# finds it; one without, for all other Pythons, free-threaded ones among them.
-wheel: $(WHEEL)/ready
+# The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md.
+peers: $(READY) $(BENCH)/peers
+	$(RUN) -m tests.native.build
+	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.peers
+
+# Two wheels into dist/, with the page of the viewer: one with the native core, for every CPython from 3.11 on with an old
+# enough C library, as auditwheel finds it; one without, for all other Pythons, free-threaded ones among them.
+wheel: $(WHEEL)/ready view
 	rm -rf build/wheel
 	mkdir -p build/wheel
 	cp -r generated/python build/wheel/source
+	cp $(OUT)/viewer.html build/wheel/source/softkin/_viewer.html
 	$(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/wheel build/wheel/source
 	rm -rf build/wheel/source/build
 	SOFTKIN_PURE=1 $(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist build/wheel/source
@@ -102,6 +112,10 @@ prove-linuxcnc: $(READY)
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)
 	$(BENCH)/bin/python -m pip install --quiet --requirement bench/requirements.txt
+	touch $@
+
+$(BENCH)/peers: bench/peers.txt $(BENCH)/ready
+	$(BENCH)/bin/python -m pip install --quiet --requirement bench/peers.txt
 	touch $@
 
 $(READY): pyproject.toml setup.py

@@ -114,15 +114,15 @@ class Controller:
 
     def explain(
         self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
-    ) -> tuple[str, float, int]:
-        """Diagnose: the reason, how much is missing, and the number of a turn that is inside."""
+    ) -> tuple[str, float, int, float]:
+        """Diagnose: the reason, how much is missing, the number of a turn that is inside, and the projection."""
         reason, outputs = self.block.call_with_outputs(
             "Diagnose",
             f=values.frame(self.library, position, rows),
             aRef=values.axes(self.library, reference),
             cd=values.configuration(self.library, configuration),
         )
-        return reason, outputs["dMissing"], outputs["iTurn"]
+        return reason, outputs["dMissing"], outputs["iTurn"], outputs["dProjection"]
 
     def inverse_offset(
         self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers

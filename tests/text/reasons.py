@@ -29,12 +29,12 @@ def compare_reason(one: Any, command: Command, inverse: str | None = None) -> No
     if inverse is None:
         inverse = asked(one.robot.inverse, frame, command.configuration, command.reference)[0]
     found = one.controller.explain(*frame, command.configuration, command.reference)
-    status, reason, missing, turn = one.robot.diagnose(frame, command.configuration, command.reference)
+    status, reason, missing, turn, projection = one.robot.diagnose(frame, command.configuration, command.reference)
     assert status.softmotion == inverse
-    assert_same(found, (reason, missing, turn), one, command)
+    assert_same(found, (reason, missing, turn, projection), one, command)
     assert (reason == "") == (status.softmotion == OK)
     assert (turn != 0) == (": this turn" in reason)
-    assert missing >= 0.0
+    assert missing >= 0.0 and projection * missing == 0.0
 
 
 def _commands(one: Any, sample: Sample) -> Iterator[Command]:

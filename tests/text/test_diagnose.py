@@ -29,7 +29,7 @@ def both(position: tuple[float, ...], configuration: tuple[int, ...]) -> Diagnos
     controller = Controller(compiled(SCARA), SCARA)
     controller.initialise(ROBOT.parameters)
     found = ROBOT.diagnose((position, NO_TURN), configuration, REFERENCE)
-    reason, missing, turn = controller.explain(position, NO_TURN, configuration, REFERENCE)
+    reason, missing, turn, _ = controller.explain(position, NO_TURN, configuration, REFERENCE)
     assert (reason, turn) == (found.reason, found.turn)
     assert missing == pytest.approx(found.missing, rel=1e-12, abs=1e-12)
     return found
@@ -53,7 +53,7 @@ def test_the_axis_beyond_its_limit_and_how_far(axes: tuple[float, ...], reason: 
 
 def test_nothing_to_say() -> None:
     """Diagnose answers an empty text for a pose that is solved."""
-    assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0)
+    assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0, 0.0)
 
 
 @pytest.mark.parametrize(("distance", "missing"), [(501.0, 1.0), (510.0, 10.0), (60.0, 40.0), (99.0, 1.0)])
@@ -66,7 +66,7 @@ def test_out_of_reach_by_a_length(distance: float, missing: float) -> None:
 
 def test_what_is_no_number() -> None:
     """Diagnose says which input is no number."""
-    assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0)
+    assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0, 0.0)
 
 
 def test_a_byte_without_a_meaning() -> None:
@@ -76,6 +76,7 @@ def test_a_byte_without_a_meaning() -> None:
         "byte 0 of the configuration means nothing",
         0.0,
         0,
+        0.0,
     )
 
 

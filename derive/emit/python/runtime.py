@@ -22,6 +22,7 @@ from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir import cells, roots
+from derive.ir.constants import SAME_ROTATION
 from derive.ir.passes import without_reasons
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of_rotation
@@ -56,7 +57,7 @@ def templates() -> Environment:
 def _constants() -> dict[str, str]:
     """The literals of the constants that modules of the runtime import, by their names."""
     texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
-    values = {**CONSTANTS, **texts, "OF_A_SEARCH": OF_A_SEARCH}
+    values = {**CONSTANTS, **texts, "OF_A_SEARCH": OF_A_SEARCH, "SAME_ROTATION": float(SAME_ROTATION)}
     return {name: _literal(values[name]) for name in sorted(values)}
 
 

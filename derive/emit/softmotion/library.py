@@ -29,7 +29,7 @@ from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import limits_function, rotation_function
 from derive.emit.st.scan import SEARCH
-from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
+from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SAME_ROTATION, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES
@@ -173,6 +173,7 @@ def _templates() -> Environment:
         search=SEARCH,
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,
+        same_rotation=literal(float(SAME_ROTATION)),
         no_meaning=NO_MEANING,
         most_sides=MOST_SIDES,
         most_kept=MOST_KEPT,

@@ -11,7 +11,7 @@
 #define SOFTKIN_MODULE "_softkin_native"
 #define SOFTKIN_START PyInit__softkin_native
 /** The digest of what all machines share: the package compares it. */
-#define SOFTKIN_SOURCES "b700f42d7b06dae7"
+#define SOFTKIN_SOURCES "41e7e981bfed535e"
 #define SOFTKIN_MACHINES 58
 
 /** A machine, with the key that its class has, too: the module, and a digest of the C. */

@@ -33,6 +33,7 @@ OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
 PIVOT = 1e-14
 RESERVE = 126
 RIM = 0.999
+SAME_ROTATION = 1e-6
 SEAM = 0.001
 SHIFTS = (0.414, 0.192)
 SINGULAR = 0.001
@@ -45,7 +46,7 @@ UNLIMITED = 1e12
 VANISHING = 1e-10
 EXTENSION = "_softkin_native"
 """The module with the native core."""
-SOURCES = "b700f42d7b06dae7"
+SOURCES = "41e7e981bfed535e"
 """The digest of what all machines share in C: an extension that was made of other sources is not used."""
 STATUSES = {
     "OK": (0, "SMC_NO_ERROR", "no error"),

@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import inf, isfinite, nan
+from os import PathLike
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
 
@@ -52,6 +53,7 @@ from softkin._types import (
     Vector,
 )
 from softkin._value import Value
+from softkin._vectors import turn_between
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,6 +65,8 @@ if TYPE_CHECKING:
     from softkin._names import NamedConfiguration
     from softkin._nearest import Measure
     from softkin._path import Path
+    from softkin._timed import Timed
+    from softkin._view import View
 
 WARNING_DISTANCE = SINGULAR
 """A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
@@ -165,6 +169,8 @@ class Mechanism(Value, ABC):
     """The indices of the axes that have period bytes."""
     HELD: tuple[int, ...] = ()
     """The indices of the axes that the inverse leaves where the reference has them."""
+    LINES: tuple[tuple[int, int, str], ...] = ()
+    """What is drawn of a closed loop: lines by the numbers of two points of `_points`, -1 is the tool, and the axes."""
     DISTANCE_AXES: tuple[int, ...]
     """The indices of the axes that decide an automatic choice."""
 
@@ -365,7 +371,8 @@ class Mechanism(Value, ABC):
 
         Where the configuration leaves branches open and none has a solution, the reason is that of the first branch.
         Where the turn of an axis is beyond its limits and another turn is not, `turn` is the number of the other one:
-        with it in the period byte, the call succeeds if nothing else refuses.
+        with it in the period byte, the call succeeds if nothing else refuses. Where nothing refuses, `projection` is
+        the angle by which the commanded rotation was changed, because the machine cannot take it.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -379,7 +386,11 @@ class Mechanism(Value, ABC):
         axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
         if isinstance(axes, Diagnosis):
             return axes
-        return self._beyond_limits(axes) or Diagnosis(Status.OK, "", 0.0)
+        if (refused := self._beyond_limits(axes)) is not None:
+            return refused
+        reached = self._started(position, rotation)._orientation(axes) if self.READS_ROTATION else rotation
+        turn = 0.0 if isinstance(reached, Status) else self._full_turn() * turn_between(rotation, reached)
+        return Diagnosis(Status.OK, "", 0.0, projection=turn)
 
     def nearest(
         self, frame: FrameLike, reference: Numbers, *, weights: Numbers | None = None, measure: Measure = "squares"
@@ -485,6 +496,20 @@ class Mechanism(Value, ABC):
         """The path from one frame straight to another: `path` of both."""
         return self.path((start, goal), configuration, reference, samples=samples, singular=singular)
 
+    def move(
+        self, start: Numbers, goal: Numbers, limits: Mapping[str, Sequence[float]], *, step: float = 0.01
+    ) -> Timed:
+        """The move of all axes from point to point, as fast as their limits allow: all start and arrive together.
+
+        start, goal: axis values, inside the limits of the axes. limits: for every axis by name its highest speed and
+        acceleration (trapezoids of speed), or speed, acceleration and jerk (S-curves), per second, in the unit of the
+        axis. step: the seconds from one time of the result to the next. Raises UNREACHABLE beyond limits, BAD_INPUT for
+        other input, ImportError without ruckig.
+        """
+        from softkin import _timed
+
+        return _timed.move(self, start, goal, limits, step)
+
     def __str__(self) -> str:
         """A table of the axes with their limits, the parameters that are given, and the branches, by name."""
         from softkin import _tables
@@ -496,6 +521,28 @@ class Mechanism(Value, ABC):
         from softkin import _tables
 
         return _tables.html(self)
+
+    def plot(self, axes: Numbers, ax: Any = None) -> Any:
+        """Draw the machine at axis values with matplotlib: its lines, the names of its axes, the frame of the tool.
+
+        axes: one value for each axis. ax: three-dimensional axes of matplotlib to draw in; None makes a figure.
+        Returns the axes of matplotlib. Raises ImportError without matplotlib, and the errors of `forward`.
+        """
+        from softkin import _plot
+
+        return _plot.machine(self, reals(axes, len(self.AXES), "axes"), ax)
+
+    def view(self, axes: Numbers | None = None, page: str | PathLike[str] | None = None) -> View:
+        """The machine in the viewer, for a notebook: the whole page stands in the result, and needs no server.
+
+        axes: where it stands, one value for each axis; None for the pose of the drawing.
+        page: the page of the viewer that has this machine, which `make view` and `softkin view` write; None for the
+        one that a wheel of the package carries. Raises NOT_INITIALIZED where there is none, or if the page has no such
+        machine (a coupling).
+        """
+        from softkin import _view
+
+        return _view.view(self, axes, page)
 
     def in_radians(self) -> Self:
         """The same machine with radians for degrees: axes, references, offsets, limits, the amounts of `diagnose`.
@@ -859,6 +906,10 @@ class Mechanism(Value, ABC):
     def _chain(self) -> tuple[Link, ...] | None:
         """The chain of a serial machine as it is described, from the base to the frame; None for a closed loop."""
         return None
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """The points of a closed loop that are drawn, three numbers each: see `LINES`."""
+        return ()
 
     def _axis_zeros(self) -> Reals:
         """The axis values at which the joints are zero."""

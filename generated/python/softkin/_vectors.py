@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import atan2, hypot, pi
 
+from softkin._constants import SAME_ROTATION
 from softkin._types import Reals, Rotation, Vector
 
 
@@ -35,6 +37,17 @@ def transposed(rotation: Rotation) -> Rotation:
 def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
     """A rotation expressed in the frame of another rotation."""
     return product(transposed(base), rotation)
+
+
+def turn_between(first: Rotation, second: Rotation) -> float:
+    """The angle between two rotations, as a share of a full turn; 0 where they differ by rounding.
+
+    The cross products of the columns add up to twice its sine, the scalar products to one and twice its cosine.
+    """
+    (a, b, c), (d, e, f) = first, second
+    sine = hypot(dot(b, f) - dot(c, e), dot(c, d) - dot(a, f), dot(a, e) - dot(b, d))
+    angle = atan2(sine, dot(a, d) + dot(b, e) + dot(c, f) - 1.0)
+    return angle / (2.0 * pi) if angle > SAME_ROTATION else 0.0
 
 
 def moved(twist: Reals, arm: Vector) -> Reals:

@@ -109,6 +109,7 @@ class Crane(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = (1,)
     LIMIT_KEYS = ("r", "theta", "phi")
+    LINES = ((2, 2, "Theta"), (0, 0, "Phi"), (0, 1, "R"))
     DISTANCE_AXES = (1, 2)
 
     offset_r: float
@@ -420,6 +421,32 @@ class Crane(OffsetKinematics):
         if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ()
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_r, axis_theta, axis_phi = axes
+        k = self._constants
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        r = axis_r - offset_r
+        theta = DEGREE * (axis_theta - offset_theta)
+        phi = DEGREE * (axis_phi - offset_phi)
+        return (
+            0.0,
+            0.0,
+            0.0,
+            cos(theta) * r * sin(phi),
+            r * sin(phi) * sin(theta),
+            cos(phi) * r,
+            0.0,
+            0.0,
+            cos(phi) * r,
+            -r * sin(phi) * sin(theta),
+            cos(theta) * r * sin(phi),
+            cos(phi) * r,
+            cos(phi) * cos(theta) * r,
+            cos(phi) * r * sin(theta),
+            -r * sin(phi),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

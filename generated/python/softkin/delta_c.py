@@ -216,6 +216,17 @@ class DeltaC(OffsetKinematics, TwistChoice):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2, 3)
     LIMIT_KEYS = ("a1", "a2", "a3", "a4")
+    LINES = (
+        (6, 0, "A1"),
+        (8, 2, "A2"),
+        (10, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, "A4"),
+        (3, -1, "A4"),
+        (5, -1, "A4"),
+    )
     DISTANCE_AXES = (0, 1, 2, 3)
 
     base_radius: float
@@ -1503,6 +1514,57 @@ class DeltaC(OffsetKinematics, TwistChoice):
         span_3_y = flange_y + sum_in_pivot_2_y
         branch_knee_3 = ((span_2_x + root_of_3 * span_3_y) * sin_a3 - 2.0 * flange_z * cos_a3) * half_by_rod_length
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3, _ = axes
+        x, y, z = position
+        k = self._constants
+        arm_length, base_radius, offset_a1, offset_a2 = k.arm_length, k.base_radius, k.offset_a1, k.offset_a2
+        offset_a3, plate_radius = k.offset_a3, k.plate_radius
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            base_radius + arm_length * cos(a1),
+            0.0,
+            -arm_length * sin(a1),
+            plate_radius + x,
+            y,
+            z,
+            -0.5 * base_radius - 0.5 * arm_length * cos(a2),
+            0.5 * sqrt(3.0) * (base_radius + arm_length * cos(a2)),
+            -arm_length * sin(a2),
+            x - 0.5 * plate_radius,
+            y + 0.5 * sqrt(3.0) * plate_radius,
+            z,
+            -0.5 * base_radius - 0.5 * arm_length * cos(a3),
+            -0.5 * sqrt(3.0) * (base_radius + arm_length * cos(a3)),
+            -arm_length * sin(a3),
+            x - 0.5 * plate_radius,
+            y - 0.5 * sqrt(3.0) * plate_radius,
+            z,
+            base_radius,
+            0.0,
+            0.0,
+            base_radius - arm_length * sin(a1),
+            0.0,
+            -arm_length * cos(a1),
+            -0.5 * base_radius,
+            0.25 * (base_radius - arm_length * cos(a2)) * sqrt(3.0)
+            + 0.25 * sqrt(3.0) * (base_radius + arm_length * cos(a2)),
+            0.0,
+            0.5 * arm_length * sin(a2) - 0.5 * base_radius,
+            0.5 * (base_radius - arm_length * sin(a2)) * sqrt(3.0),
+            -arm_length * cos(a2),
+            -0.5 * base_radius,
+            -0.25 * (base_radius - arm_length * cos(a3)) * sqrt(3.0)
+            - 0.25 * sqrt(3.0) * (base_radius + arm_length * cos(a3)),
+            0.0,
+            0.5 * arm_length * sin(a3) - 0.5 * base_radius,
+            -0.5 * (base_radius - arm_length * sin(a3)) * sqrt(3.0),
+            -arm_length * cos(a3),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

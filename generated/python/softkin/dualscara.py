@@ -224,6 +224,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 3)
     LIMIT_KEYS = ("a1", "a2", "a3", "a4")
+    LINES = ((3, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 1, ""), (1, -1, "A3 A4"))
     DISTANCE_AXES = (0, 1, 3)
 
     base_distance: float
@@ -1021,6 +1022,39 @@ class DualScara(OffsetKinematics, TwistChoice):
         span_2_x = flange_x - half_base_distance  # rod 2: known part of its vector
         branch_elbow_2 = one_by_rod_length_2 * (flange_y * cos_a2 - span_2_x * sin_a2)
         return (branch_elbow_1, branch_elbow_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, _, _ = axes
+        x, y, _ = position
+        k = self._constants
+        arm_length_1, arm_length_2, base_distance = k.arm_length_1, k.arm_length_2, k.base_distance
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            arm_length_1 * cos(a1) - 0.5 * base_distance,
+            arm_length_1 * sin(a1),
+            0.0,
+            x,
+            y,
+            0.0,
+            0.5 * base_distance + arm_length_2 * cos(a2),
+            arm_length_2 * sin(a2),
+            0.0,
+            -0.5 * base_distance,
+            0.0,
+            0.0,
+            -0.5 * base_distance - arm_length_1 * sin(a1),
+            arm_length_1 * cos(a1),
+            0.0,
+            0.5 * base_distance,
+            0.0,
+            0.0,
+            0.5 * base_distance - arm_length_2 * sin(a2),
+            arm_length_2 * cos(a2),
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -673,6 +673,26 @@ class Hexaglide(IterativeForward):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3", "a4", "a5", "a6")
+    LINES = (
+        (13, 0, "A1"),
+        (14, 2, "A2"),
+        (15, 4, "A3"),
+        (16, 6, "A4"),
+        (17, 8, "A5"),
+        (18, 10, "A6"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (6, 7, ""),
+        (8, 9, ""),
+        (10, 11, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     rail_1_y: float
@@ -2617,6 +2637,88 @@ class Hexaglide(IterativeForward):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        k = self._constants
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, platform_1_x, platform_1_y = k.offset_a5, k.offset_a6, k.platform_1_x, k.platform_1_y
+        platform_1_z, platform_2_x, platform_2_y = k.platform_1_z, k.platform_2_x, k.platform_2_y
+        platform_2_z, platform_3_x, platform_3_y = k.platform_2_z, k.platform_3_x, k.platform_3_y
+        platform_3_z, platform_4_x, platform_4_y = k.platform_3_z, k.platform_4_x, k.platform_4_y
+        platform_4_z, platform_5_x, platform_5_y = k.platform_4_z, k.platform_5_x, k.platform_5_y
+        platform_5_z, platform_6_x, platform_6_y = k.platform_5_z, k.platform_6_x, k.platform_6_y
+        platform_6_z, rail_1_y, rail_1_z, rail_2_y = k.platform_6_z, k.rail_1_y, k.rail_1_z, k.rail_2_y
+        rail_2_z, rail_3_y, rail_3_z, rail_4_y, rail_4_z = k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y, k.rail_4_z
+        rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        a4 = axis_a4 - offset_a4
+        a5 = axis_a5 - offset_a5
+        a6 = axis_a6 - offset_a6
+        return (
+            a1,
+            rail_1_y,
+            rail_1_z,
+            x + platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13,
+            y + platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23,
+            z + platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33,
+            a2,
+            rail_2_y,
+            rail_2_z,
+            x + platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13,
+            y + platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23,
+            z + platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33,
+            a3,
+            rail_3_y,
+            rail_3_z,
+            x + platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13,
+            y + platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23,
+            z + platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33,
+            a4,
+            rail_4_y,
+            rail_4_z,
+            x + platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13,
+            y + platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23,
+            z + platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33,
+            a5,
+            rail_5_y,
+            rail_5_z,
+            x + platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13,
+            y + platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23,
+            z + platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33,
+            a6,
+            rail_6_y,
+            rail_6_z,
+            x + platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13,
+            y + platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23,
+            z + platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            rail_1_y,
+            rail_1_z,
+            0.0,
+            rail_2_y,
+            rail_2_z,
+            0.0,
+            rail_3_y,
+            rail_3_z,
+            0.0,
+            rail_4_y,
+            rail_4_z,
+            0.0,
+            rail_5_y,
+            rail_5_z,
+            0.0,
+            rail_6_y,
+            rail_6_z,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

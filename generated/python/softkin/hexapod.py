@@ -515,6 +515,20 @@ class Hexapod(IterativeForward):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("l1", "l2", "l3", "l4", "l5", "l6")
+    LINES = (
+        (0, 1, "L1"),
+        (2, 3, "L2"),
+        (4, 5, "L3"),
+        (6, 7, "L4"),
+        (8, 9, "L5"),
+        (10, 11, "L6"),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     base_1_x: float
@@ -2316,6 +2330,60 @@ class Hexapod(IterativeForward):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        k = self._constants
+        base_1_x, base_1_y, base_1_z, base_2_x, base_2_y = k.base_1_x, k.base_1_y, k.base_1_z, k.base_2_x, k.base_2_y
+        base_2_z, base_3_x, base_3_y, base_3_z, base_4_x = k.base_2_z, k.base_3_x, k.base_3_y, k.base_3_z, k.base_4_x
+        base_4_y, base_4_z, base_5_x, base_5_y, base_5_z = k.base_4_y, k.base_4_z, k.base_5_x, k.base_5_y, k.base_5_z
+        base_6_x, base_6_y, base_6_z, platform_1_x = k.base_6_x, k.base_6_y, k.base_6_z, k.platform_1_x
+        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
+        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
+        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
+        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
+        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
+        platform_6_y, platform_6_z = k.platform_6_y, k.platform_6_z
+        return (
+            base_1_x,
+            base_1_y,
+            base_1_z,
+            x + platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13,
+            y + platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23,
+            z + platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33,
+            base_2_x,
+            base_2_y,
+            base_2_z,
+            x + platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13,
+            y + platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23,
+            z + platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33,
+            base_3_x,
+            base_3_y,
+            base_3_z,
+            x + platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13,
+            y + platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23,
+            z + platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33,
+            base_4_x,
+            base_4_y,
+            base_4_z,
+            x + platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13,
+            y + platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23,
+            z + platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33,
+            base_5_x,
+            base_5_y,
+            base_5_z,
+            x + platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13,
+            y + platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23,
+            z + platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33,
+            base_6_x,
+            base_6_y,
+            base_6_z,
+            x + platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13,
+            y + platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23,
+            z + platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

@@ -157,6 +157,7 @@ class P2XType1(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((5, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     arm_length_1: float
@@ -654,6 +655,39 @@ class P2XType1(OffsetKinematics):
         branch_carriage_1 = (flange_x - pivot_1_x) * one_by_arm_length_1
         branch_carriage_2 = (pivot_2_x - flange_x) * one_by_arm_length_2
         return (branch_carriage_1, branch_carriage_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        offset_a1, offset_a2, rail_y_1, rail_y_2 = k.offset_a1, k.offset_a2, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        return (
+            a1,
+            rail_y_1,
+            0.0,
+            x - tcp_offset_1,
+            y,
+            0.0,
+            a2,
+            rail_y_2,
+            0.0,
+            tcp_offset_2 + x,
+            y,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            rail_y_1,
+            0.0,
+            0.0,
+            rail_y_2,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -123,6 +123,7 @@ class P2XType2(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((5, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     arm_length: float
@@ -409,6 +410,35 @@ class P2XType2(OffsetKinematics):
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ()
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        offset_a1, offset_a2, tcp_link_distance = k.offset_a1, k.offset_a2, k.tcp_link_distance
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        return (
+            a1,
+            0.0,
+            0.0,
+            x - 0.5 * tcp_link_distance,
+            y,
+            0.0,
+            a2,
+            0.0,
+            0.0,
+            0.5 * tcp_link_distance + x,
+            y,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

@@ -132,6 +132,7 @@ class PCC(OffsetKinematics):
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2", "elbow")
+    LINES = ((0, 0, "A1"), (1, 1, "A2"), (0, 1, ""), (1, 2, ""))
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float
@@ -463,6 +464,31 @@ class PCC(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2_from_a1 = -sin(a1 - a2)
         return (sin_a2_from_a1,)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            0.0,
+            0.0,
+            0.0,
+            cos(a1) * link_length_1,
+            link_length_1 * sin(a1),
+            0.0,
+            cos(a1) * link_length_1 + cos(a2) * link_length_2,
+            link_length_1 * sin(a1) + link_length_2 * sin(a2),
+            0.0,
+            -link_length_1 * sin(a1),
+            cos(a1) * link_length_1,
+            0.0,
+            cos(a1) * link_length_1 - link_length_2 * sin(a2),
+            link_length_1 * sin(a1) + cos(a2) * link_length_2,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -434,6 +434,17 @@ class Planar3RRR(IterativeForward, TwistChoice):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (6, 0, "A1"),
+        (8, 2, "A2"),
+        (10, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     base_1_x: float
@@ -1341,6 +1352,59 @@ class Planar3RRR(IterativeForward, TwistChoice):
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, _ = position
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        k = self._constants
+        arm_length_1, arm_length_2, arm_length_3, base_1_x = k.arm_length_1, k.arm_length_2, k.arm_length_3, k.base_1_x
+        base_1_y, base_2_x, base_2_y, base_3_x, base_3_y = k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x, k.base_3_y
+        offset_a1, offset_a2, offset_a3, platform_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.platform_1_x
+        platform_1_y, platform_2_x, platform_2_y = k.platform_1_y, k.platform_2_x, k.platform_2_y
+        platform_3_x, platform_3_y = k.platform_3_x, k.platform_3_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            base_1_x + arm_length_1 * cos(a1),
+            base_1_y + arm_length_1 * sin(a1),
+            0.0,
+            x + platform_1_x * r11 + platform_1_y * r12,
+            y + platform_1_x * r21 + platform_1_y * r22,
+            0.0,
+            base_2_x + arm_length_2 * cos(a2),
+            base_2_y + arm_length_2 * sin(a2),
+            0.0,
+            x + platform_2_x * r11 + platform_2_y * r12,
+            y + platform_2_x * r21 + platform_2_y * r22,
+            0.0,
+            base_3_x + arm_length_3 * cos(a3),
+            base_3_y + arm_length_3 * sin(a3),
+            0.0,
+            x + platform_3_x * r11 + platform_3_y * r12,
+            y + platform_3_x * r21 + platform_3_y * r22,
+            0.0,
+            base_1_x,
+            base_1_y,
+            0.0,
+            base_1_x - arm_length_1 * sin(a1),
+            base_1_y + arm_length_1 * cos(a1),
+            0.0,
+            base_2_x,
+            base_2_y,
+            0.0,
+            base_2_x - arm_length_2 * sin(a2),
+            base_2_y + arm_length_2 * cos(a2),
+            0.0,
+            base_3_x,
+            base_3_y,
+            0.0,
+            base_3_x - arm_length_3 * sin(a3),
+            base_3_y + arm_length_3 * cos(a3),
+            0.0,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

@@ -110,7 +110,7 @@ class Constants:
         twice_sin_rail_angle = 2.0 * sin_rail_angle
         sum_in_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
         self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
-        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
+        self.rail_angle, self.offset_a1, self.offset_a2, self.offset_a3 = rail_angle, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.sin_rail_angle = min_type2_margin, tie, sin_rail_angle
         self.cos_rail_angle, self.assembly_sign = cos_rail_angle, assembly_sign
         self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
@@ -211,6 +211,17 @@ class TripodLinear(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (7, 0, "A1"),
+        (9, 2, "A2"),
+        (11, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     outer_radius: float
@@ -1315,6 +1326,55 @@ class TripodLinear(OffsetKinematics):
             2.0 * a3 + sum_in_branch_carriage_2 - span_3_y * sin_rail_angle_times_root_of_3
         ) * half_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        inner_radius, offset_a1, offset_a2, offset_a3 = k.inner_radius, k.offset_a1, k.offset_a2, k.offset_a3
+        outer_radius, rail_angle = k.outer_radius, k.rail_angle
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        return (
+            -outer_radius - a1 * sin(DEGREE * rail_angle),
+            0.0,
+            -a1 * cos(DEGREE * rail_angle),
+            x - inner_radius,
+            y,
+            z,
+            0.5 * outer_radius + 0.5 * a2 * sin(DEGREE * rail_angle),
+            -0.5 * sqrt(3.0) * (outer_radius + a2 * sin(DEGREE * rail_angle)),
+            -a2 * cos(DEGREE * rail_angle),
+            0.5 * inner_radius + x,
+            y - 0.5 * sqrt(3.0) * inner_radius,
+            z,
+            0.5 * outer_radius + 0.5 * a3 * sin(DEGREE * rail_angle),
+            0.5 * sqrt(3.0) * (outer_radius + a3 * sin(DEGREE * rail_angle)),
+            -a3 * cos(DEGREE * rail_angle),
+            0.5 * inner_radius + x,
+            y + 0.5 * sqrt(3.0) * inner_radius,
+            z,
+            -sin(DEGREE * rail_angle),
+            0.0,
+            -cos(DEGREE * rail_angle),
+            -outer_radius,
+            0.0,
+            0.0,
+            0.5 * sin(DEGREE * rail_angle),
+            -0.5 * sqrt(3.0) * sin(DEGREE * rail_angle),
+            -cos(DEGREE * rail_angle),
+            0.5 * outer_radius,
+            -0.5 * sqrt(3.0) * outer_radius,
+            0.0,
+            0.5 * sin(DEGREE * rail_angle),
+            0.5 * sqrt(3.0) * sin(DEGREE * rail_angle),
+            -cos(DEGREE * rail_angle),
+            0.5 * outer_radius,
+            0.5 * sqrt(3.0) * outer_radius,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -183,7 +183,9 @@ class Constants:
         sum_in_slope_3_by_x = tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) - 1.0
         product_in_slope_3_by_x = -rail_x_3 * sum_in_slope_3_by_x
         product_in_slope_3_by_y = -rail_y_3 * sum_in_slope_3_by_x
-        self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
+        self.arm_length, self.tcp_displacement, self.rail_x_1 = arm_length, tcp_displacement, rail_x_1
+        self.rail_y_1, self.rail_x_2, self.rail_y_2, self.rail_x_3 = rail_y_1, rail_x_2, rail_y_2, rail_x_3
+        self.rail_y_3, self.offset_a1, self.offset_a2, self.offset_a3 = rail_y_3, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.pivot_1_y, self.pivot_2_y = min_type2_margin, tie, pivot_1_y, pivot_2_y
         self.centre_1_to_2_y, self.pivot_3_y, self.centre_1_to_3_y = centre_1_to_2_y, pivot_3_y, centre_1_to_3_y
         self.pivot_1_x, self.pivot_2_x, self.centre_1_to_2_x = pivot_1_x, pivot_2_x, centre_1_to_2_x
@@ -268,6 +270,17 @@ class TripodP3Z(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (7, 0, "A1"),
+        (8, 2, "A2"),
+        (9, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length: float
@@ -987,6 +1000,50 @@ class TripodP3Z(OffsetKinematics):
         branch_carriage_2 = (a2 - flange_z) * one_by_arm_length
         branch_carriage_3 = (a3 - flange_z) * one_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        offset_a1, offset_a2, offset_a3, rail_x_1 = k.offset_a1, k.offset_a2, k.offset_a3, k.rail_x_1
+        rail_x_2, rail_x_3, rail_y_1, rail_y_2, rail_y_3 = k.rail_x_2, k.rail_x_3, k.rail_y_1, k.rail_y_2, k.rail_y_3
+        tcp_displacement = k.tcp_displacement
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        return (
+            rail_x_1,
+            rail_y_1,
+            a1,
+            x + rail_x_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1),
+            y + rail_y_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1),
+            z,
+            rail_x_2,
+            rail_y_2,
+            a2,
+            x + rail_x_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2),
+            y + rail_y_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2),
+            z,
+            rail_x_3,
+            rail_y_3,
+            a3,
+            x + rail_x_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3),
+            y + rail_y_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3),
+            z,
+            0.0,
+            0.0,
+            1.0,
+            rail_x_1,
+            rail_y_1,
+            0.0,
+            rail_x_2,
+            rail_y_2,
+            0.0,
+            rail_x_3,
+            rail_y_3,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

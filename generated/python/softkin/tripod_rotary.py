@@ -116,9 +116,9 @@ class Constants:
         arm_length_1_squared_times_2 = 2.0 * arm_length_1 * arm_length_1
         product_in_rate_of_slope_2_by_a2 = arm_length_1 * arm_length_1 * (0.5 + 0.5 * root_of_3 * root_of_3)
         self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
-        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
-        self.min_type2_margin, self.fixed_length_1 = min_type2_margin, fixed_length_1
-        self.fixed_length_2, self.assembly_sign = fixed_length_2, assembly_sign
+        self.stewart_radius, self.distance, self.offset_a1 = stewart_radius, distance, offset_a1
+        self.offset_a2, self.offset_a3, self.min_type2_margin = offset_a2, offset_a3, min_type2_margin
+        self.fixed_length_1, self.fixed_length_2, self.assembly_sign = fixed_length_1, fixed_length_2, assembly_sign
         self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
         self.product_in_normal_divisor, self.arm_length_2_squared = product_in_normal_divisor, arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
@@ -227,6 +227,26 @@ class TripodRotary(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (12, 0, "A1"),
+        (12, 2, "A1"),
+        (15, 4, "A2"),
+        (15, 6, "A2"),
+        (18, 8, "A3"),
+        (18, 10, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (6, 7, ""),
+        (8, 9, ""),
+        (10, 11, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length_1: float
@@ -1538,6 +1558,157 @@ class TripodRotary(OffsetKinematics):
         span_3_y = flange_y + sum_in_pivot_2_y
         branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        arm_1_radius, arm_length_1, arm_length_2, distance = k.arm_1_radius, k.arm_length_1, k.arm_length_2, k.distance
+        offset_a1, offset_a2, offset_a3, stewart_radius = k.offset_a1, k.offset_a2, k.offset_a3, k.stewart_radius
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            -arm_1_radius - arm_length_1 * cos(a1),
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a1),
+            x - root(stewart_radius * stewart_radius - 0.25 * distance * distance),
+            y - 0.5 * distance,
+            z,
+            -arm_1_radius - arm_length_1 * cos(a1),
+            0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a1),
+            x - root(stewart_radius * stewart_radius - 0.25 * distance * distance),
+            0.5 * distance + y,
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a2) + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a2),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + y - 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a2) - 0.25 * sqrt(3.0) * distance,
+            -0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a2),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) - 0.25 * sqrt(3.0) * distance,
+            y - 0.25 * distance - 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a3) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a3),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + y + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a3) + 0.25 * sqrt(3.0) * distance,
+            0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)) - 0.25 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a3),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) + 0.25 * sqrt(3.0) * distance,
+            y + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0) - 0.25 * distance,
+            z,
+            -arm_1_radius,
+            0.0,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            arm_length_1 * sin(a1) - arm_1_radius,
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a1),
+            -arm_1_radius,
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius,
+            -0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a2))
+            - 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius + 0.25 * sqrt(3.0) * distance - 0.5 * arm_length_1 * sin(a2),
+            0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius - arm_length_1 * sin(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a2),
+            0.5 * arm_1_radius + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance
+            - 0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a2))
+            - 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius,
+            0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a3))
+            + 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius - 0.5 * arm_length_1 * sin(a3) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + 0.5 * sqrt(3.0) * (arm_1_radius - arm_length_1 * sin(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a3),
+            0.5 * arm_1_radius - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance
+            + 0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a3))
+            + 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

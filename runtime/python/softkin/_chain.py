@@ -80,7 +80,7 @@ def true_chain(robot: Mechanism, deviations: Mapping[str, float], base: Placed, 
             frames.append(placed(placed(here, own), off))
             here = placed(_inverse(off), _inverse(own))
         if link.fixed:
-            here = placed(here, _motion(link.motion == "turn", link.axis, link.fixed))
+            here = placed(here, motion(link.motion == "turn", link.axis, link.fixed))
     return Chain((*frames, placed(placed(here, of_tool), tool)), joints)
 
 
@@ -160,7 +160,7 @@ def _inverse(frame: Placed) -> Placed:
     return made.position, made.rotation
 
 
-def _motion(turns: bool, axis: int, amount: float) -> Placed:
+def motion(turns: bool, axis: int, amount: float) -> Placed:
     """A turn about (radians), or a shift along, x, y or z."""
     if not turns:
         x, y, z = (amount if k == axis else 0.0 for k in range(3))
@@ -185,11 +185,11 @@ def _off(joint: Joint, deviations: Mapping[str, float]) -> Placed:
     x, y, about_x, about_y = (
         deviations.get(f"{joint.name}_{k}", 0.0) for k in ("shift_x", "shift_y", "tilt_x", "tilt_y")
     )
-    turn = product(_motion(True, 0, DEGREE * about_x)[1], _motion(True, 1, DEGREE * about_y)[1])
+    turn = product(motion(True, 0, DEGREE * about_x)[1], motion(True, 1, DEGREE * about_y)[1])
     return (x, y, 0.0), turn
 
 
 def _frame(deviations: Mapping[str, float], end: str) -> Placed:
     x, y, z, a, b, c = (deviations.get(f"{end}_{k}", 0.0) for k in "xyzabc")
-    turn = product(_motion(True, 2, DEGREE * c)[1], _motion(True, 1, DEGREE * b)[1])
-    return (x, y, z), product(turn, _motion(True, 0, DEGREE * a)[1])
+    turn = product(motion(True, 2, DEGREE * c)[1], motion(True, 1, DEGREE * b)[1])
+    return (x, y, z), product(turn, motion(True, 0, DEGREE * a)[1])
