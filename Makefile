@@ -17,14 +17,15 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
+.PHONY: generate flat pacdrive check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
 
 # Blocks without a base, each with all of its methods, into build/flat/st: for older versions of CODESYS.
-flat: $(READY)
-	$(RUN) -m derive generate --output $(OUT)/flat --profile $(or $(PROFILE),flat)
+# And user transformations for Schneider PacDrive, into build/pacdrive/st.
+flat pacdrive: $(READY)
+	$(RUN) -m derive generate --output $(OUT)/$@ --profile $(or $(PROFILE),$@)
 
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
