@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat pacdrive check test sweep quick report bench wheel javascript c clang linuxcnc fmu klipper view prove-linuxcnc prove-klipper
+.PHONY: generate flat pacdrive check test sweep quick report bench wheel javascript c clang linuxcnc fmu klipper br view prove-linuxcnc prove-klipper
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
@@ -35,9 +35,9 @@ javascript: $(READY)
 c: $(READY)
 	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
-# Kinematics modules of LinuxCNC and Klipper into build/linuxcnc and build/klipper, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
+# Kinematics modules of LinuxCNC and Klipper into build/linuxcnc and build/klipper, C for B&R into build/br, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
 # MECHANISM=Kin_Scara3_Z of this machine; with MECHANISM=my_machine.py of a machine of your own.
-linuxcnc fmu klipper: $(READY)
+linuxcnc fmu klipper br: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
 		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language $@ $(OPTIONS)
 

@@ -32,8 +32,9 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--only", nargs="*", default=[], metavar="NAME", help="these mechanisms alone")
     asked = parser.parse_args(arguments)
     folder: Path = asked.folder.resolve()
+    python = str(Path(asked.python).absolute())
     try:
-        klipper = prepared(asked.checkout, asked.python, folder)
+        klipper = prepared(asked.checkout, python, folder)
     except CannotRun as reason:
         print(f"The proof on Klipper did not run: {str(reason).rstrip('.')}.", file=sys.stderr)
         return CANNOT
@@ -44,7 +45,7 @@ def main(arguments: list[str]) -> int:
     is_proven = True
     for machine in machines:
         name = machine.name
-        found = run(module_name(name), way_of(machine), klipper, asked.python, folder / "written" / "klipper")
+        found = run(module_name(name), way_of(machine), klipper, python, folder / "written" / "klipper")
         is_well = not found.fault and found.farthest <= MOST
         is_proven &= is_well
         print(f"| {name} | {found.count:,} | {found.farthest:.4f} | {found.fault or ('' if is_well else 'too far')} |")

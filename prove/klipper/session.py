@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from prove.klipper import softkin_written
 from prove.klipper.path import Way
 from prove.klipper.steps import Compared, compared, decoded
 
@@ -34,6 +35,7 @@ def prepared(checkout: str, python: str, folder: Path) -> Path:
         raise CannotRun(f"{python} lacks one of {_MODULES}")
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(source, folder / "klipper", symlinks=True, ignore=shutil.ignore_patterns(".git", "*.so", "out"))
+    shutil.copy(softkin_written.__file__, folder / "klipper" / "klippy" / "extras")
     config = folder / "klipper" / ".config"
     config.write_text("CONFIG_MACH_LINUX=y\n")
     for target in ("olddefconfig", "all"):
@@ -54,7 +56,7 @@ def run(module: str, way: Way, klipper: Path, python: str, written: Path) -> Com
     work = klipper.parent / module
     work.mkdir(exist_ok=True)
     (work / "printer.cfg").write_text(_configured(module, way))
-    (work / "program.gcode").write_text(f"G28\nG90\n{way.program}\nM400\n")
+    (work / "program.gcode").write_text(f"G28\nG90\n{way.program}\nG28\n")
     dictionary = klipper / "out" / "klipper.dict"
     command = [python, str(klipper / "klippy" / "klippy.py"), "printer.cfg", "-i", "program.gcode"]
     try:
@@ -79,7 +81,7 @@ def _pin(axis: int) -> str:
 
 
 def _configured(module: str, way: Way) -> str:
-    lines = ["[mcu]", "serial: /tmp/none", "[gcode_arcs]", "resolution: 0.05", "[printer]"]
+    lines = ["[softkin_written]", "[mcu]", "serial: /tmp/none", "[gcode_arcs]", "resolution: 0.05", "[printer]"]
     lines += [f"kinematics: softkin_{module}", "max_velocity: 100", "max_accel: 500", "square_corner_velocity: 0"]
     lines += [f"{name}: {value!r}" for name, value in way.sizes.items()]
     for byte, branch in zip(way.configuration, way.robot.CONFIGURATION[: way.robot.BRANCHES], strict=False):

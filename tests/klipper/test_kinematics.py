@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from functools import cache
 from math import degrees
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from derive.command.line import main
+from derive.description.catalogue import MECHANISMS
 from derive.emit.around_c.package import klipper, only_positions
 from prove.klipper.path import Way, way_of
 from tests.klipper.pretended import TOOLHEAD, Config, Refused, loaded, move, sections_of, solver
@@ -117,3 +120,13 @@ def test_machines_that_turn_their_tool_have_no_module() -> None:
     """A SCARA with a fourth axis commands a turn, which a program of a printer does not have."""
     assert klipper.part(kinematics_of(named("Kin_Scara4_ZCcoupled_Type1"))) is None
     assert {"Kin_Scara2_Z", "Kin_Polar_Z", "Kin_P2C_Type1", "Kin_Delta_P3C_Type3", "Kin_Tripod_Linear"} <= set(NAMES)
+
+
+def test_what_is_left_out_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A sentence for each controller that does not take a machine, and no file."""
+    asked = ["derive", str(MECHANISMS / "kin_caxis.py"), "--out", str(tmp_path / "out")]
+    assert main([*asked, "--language", "klipper", "--language", "br"]) == 0
+    said = capsys.readouterr().out
+    assert "no module for Klipper: it takes machines whose position alone decides all 1 axes" in said
+    assert "no functions for B&R: its 1 axes are not those of a position" in said
+    assert not list((tmp_path / "out").rglob("*.*"))

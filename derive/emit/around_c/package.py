@@ -16,6 +16,11 @@ from derive.emit.c.description import inputs
 from derive.emit.language import GENERATED, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 
+_FUNCTIONS = (
+    ("direct", "Dir"), ("inverse", "Inv"), ("direct_derivative", "DirDer"), ("inverse_derivative", "InvDer"),
+)  # fmt: skip
+"""The functions of mapp Motion: our name, and the word in the name of their structure."""
+
 
 @dataclass(frozen=True)
 class AroundC:
@@ -61,6 +66,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "position": kin.mechanism.task.position,
         "axes": [(joint.name, joint.in_degrees) for joint in kin.mechanism.joints],
         "branches": [(branch.name, branch.names) for branch in kin.branches],
+        "functions": _FUNCTIONS,
         "parameters": [(names[p.name], p.default) for p in kin.parameters],
     }
 
@@ -71,6 +77,18 @@ def only_positions(mechanism: Mechanism) -> bool:
     return is_whole and mechanism.task.turning is Turning.NONE and not mechanism.held_joints
 
 
+def commands_all_axes(mechanism: Mechanism) -> bool:
+    """Whether a position, with no turn, one about z or a whole rotation, has as many coordinates as there are axes."""
+    turns = {Turning.NONE: 0, Turning.ABOUT_Z: 1, Turning.FULL: 3}.get(mechanism.task.turning, -1)
+    is_whole = len(mechanism.joints) == len(mechanism.task.position) + turns
+    return turns >= 0 and is_whole and bool(mechanism.task.position) and not mechanism.held_joints
+
+
+br = AroundC(
+    "br", "B&R mapp Motion",
+    "no functions for B&R: its {axes} axes are not those of a position with no turn, one about z, or a whole rotation",
+    commands_all_axes, {"{module}_br.h": "machine.h.j2", "{module}_br.c": "machine.c.j2"},
+)  # fmt: skip
 klipper = AroundC(
     "klipper", "Klipper",
     "no module for Klipper: it takes machines whose position alone decides all {axes} axes",
