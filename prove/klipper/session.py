@@ -56,7 +56,7 @@ def run(module: str, way: Way, klipper: Path, python: str, written: Path) -> Com
     work = klipper.parent / module
     work.mkdir(exist_ok=True)
     (work / "printer.cfg").write_text(_configured(module, way))
-    (work / "program.gcode").write_text(f"G28\nG90\n{way.program}\nG28\n")
+    (work / "program.gcode").write_text(f"G28\nG90\n{way.program}\nM400\n")
     dictionary = klipper / "out" / "klipper.dict"
     command = [python, str(klipper / "klippy" / "klippy.py"), "printer.cfg", "-i", "program.gcode"]
     try:
