@@ -17,14 +17,16 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu view docs prove-linuxcnc
+.PHONY: generate flat pacdrive check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu klipper br \
+	view docs prove-linuxcnc prove-klipper
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
 
 # Blocks without a base, each with all of its methods, into build/flat/st: for older versions of CODESYS.
-flat: $(READY)
-	$(RUN) -m derive generate --output $(OUT)/flat --profile $(or $(PROFILE),flat)
+# And user transformations for Schneider PacDrive, into build/pacdrive/st.
+flat pacdrive: $(READY)
+	$(RUN) -m derive generate --output $(OUT)/$@ --profile $(or $(PROFILE),$@)
 
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
@@ -34,9 +36,9 @@ javascript: $(READY)
 c: $(READY)
 	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
-# Kinematics modules of LinuxCNC into build/linuxcnc, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
+# Kinematics modules of LinuxCNC and Klipper into build/linuxcnc and build/klipper, C for B&R into build/br, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
 # MECHANISM=Kin_Scara3_Z of this machine; with MECHANISM=my_machine.py of a machine of your own.
-linuxcnc fmu: $(READY)
+linuxcnc fmu klipper br: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
 		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language $@ $(OPTIONS)
 
@@ -108,6 +110,17 @@ $(WHEEL)/ready:
 IF_POSSIBLE ?=
 prove-linuxcnc: $(READY)
 	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible) $(if $(FRESH),--fresh)
+
+# The real Klipper reads a program and writes every step, without hardware: make prove-klipper KLIPPER=its checkout.
+KLIPPER ?=
+KLIPPY := .venv-klipper
+prove-klipper: $(READY) $(if $(KLIPPER),$(KLIPPY)/ready)
+	PYTHONPATH=generated/python $(RUN) -m prove.klipper $(KLIPPER) $(if $(KLIPPER),--python $(abspath $(KLIPPY))/bin/python)
+
+$(KLIPPY)/ready: prove/klipper/requirements.txt
+	$(PYTHON) -m venv $(KLIPPY)
+	$(KLIPPY)/bin/python -m pip install --quiet --requirement prove/klipper/requirements.txt
+	touch $@
 
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)

@@ -17,7 +17,7 @@ from .lexical import QUERY
 
 _COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
 _LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}  # these evaluate both sides, as Structured Text does
-_CHOICES = {"MIN": "minimum", "MAX": "maximum", "SEL": "selected", "LIMIT": "limited"}
+_CHOICES = {"MIN": "minimum", "MAX": "maximum", "SEL": "selected", "LIMIT": "limited", "LEFT": "left"}
 
 
 class Expressions:

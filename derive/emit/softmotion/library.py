@@ -38,6 +38,8 @@ from derive.report.reasons import NO_MEANING, NOT_INITIALIZED
 _FOLDER = "st"
 _SHARED = "softkin"
 """The folder of the objects that all blocks share."""
+_TRANSFORMATIONS = "pacdrive"
+"""The folder of what user transformations need beside."""
 _PREAMBLE = f"""\
 // {GENERATED}
 // To paste: the text below a ruler, up to the next line with a ruler or the end of one, is the declaration or
@@ -102,7 +104,10 @@ def _objects(
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by the path without its ending."""
     rotation, limits = rotation_function(contract), limits_function(contract)
-    shared = {path.removesuffix(".st"): text for path, text in runtime(_FOLDER).items()}
+    further = runtime(_TRANSFORMATIONS) if contract.transformations else {}
+    enumerations = templates.get_template("enumerations.st.j2").render(names=contract.names)
+    yield from ((f"{_SHARED}/{one.name}", (one,)) for one in objects_of(enumerations))
+    shared = {path.removesuffix(".st"): text for path, text in {**runtime(_FOLDER), **further}.items()}
     for path in (TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2"):
         shared[f"{_SHARED}/{path.name.removesuffix('.st.j2')}"] = templates.get_template(
             f"{_SHARED}/{path.name}"

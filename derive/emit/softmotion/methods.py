@@ -96,7 +96,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
 
 
 def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
-    known = contract.signatures
+    known = contract.signatures | {n: s for i in contract.closure(block.interfaces) for n, s in i.methods.items()}
     names = _names(block, contract)
     programs = _programs(kinematics)
     ready: set[str] = set()
@@ -177,6 +177,7 @@ def _method(
     name = source.signature.name
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
+    context["turns"] = any(p.name.endswith("Orientation") for p in source.signature.parameters)
     if name == "ReasonOf":
         context["reasons"] = texts(kinematics)
     if source.search is not None:
