@@ -783,6 +783,292 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const excavator_machine *k = machine;
+  const double axis_a1 = axes[0], axis_s2 = axes[1], axis_s3 = axes[2], axis_s4 = axes[3],
+      speed_a1 = speeds[0], speed_s2 = speeds[1], speed_s3 = speeds[2], speed_s4 = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_s2, speed_s3, speed_s4, axis_a1, axis_s2,
+      axis_s3, axis_s4}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double motor_s2 = axis_s2 - k->offset_s2;
+  const double level_of_b = motor_s2*motor_s2 - k->sum_in_level_of_b;
+  /* S2: its loop does not close */
+  if (!(fabs(level_of_b) <= k->shared_product)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
+  }
+  if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double motor_s3 = axis_s3 - k->offset_s3;
+  const double level_of_c = motor_s3*motor_s3 - k->sum_in_level_of_c;
+  /* S3: its loop does not close */
+  if (!(fabs(level_of_c) <= k->shared_product_2)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S3: its loop does not close", "", 0.0, 0);
+  }
+  if (!(2.0*motor_s3 >= -k->machine_scale_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double motor_s4 = axis_s4 - k->offset_s4;
+  const double level_of_r = motor_s4*motor_s4 - k->sum_in_level_of_r;
+  /* S4: its loop does not close */
+  if (!(fabs(level_of_r) <= k->shared_product_3)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S4: its loop does not close", "", 0.0, 0);
+  }
+  if (!(2.0*motor_s4 >= -k->machine_scale_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S4: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double product_in_root_of_r = (k->reach_of_r_2 - level_of_r)*(level_of_r + k->reach_of_r_2);
+  const double root_of_r = softkin_root(product_in_root_of_r);
+  const double cos_r = (k->across_of_r_2*root_of_r + k->along_of_r_2*level_of_r)*k->one_by_divisor_of_r_2;
+  const double level_of_d = -k->sum_in_level_of_d - k->product_in_level_of_d*cos_r;
+  const double sin_r = (k->across_of_r_2*level_of_r - k->along_of_r_2*root_of_r)*k->one_by_divisor_of_r_2;
+  /* the loop of D, solved for D */
+  const double along_of_d = k->bucket_ear_z_times_rocker_length_times_2*sin_r - k->product_in_along_of_d
+      - k->bucket_ear_x_times_rocker_length_times_2*cos_r;
+  const double across_of_d = -k->product_in_across_of_d - k->bucket_ear_x_times_rocker_length_times_2*sin_r
+      - k->bucket_ear_z_times_rocker_length_times_2*cos_r;
+  const double sum_in_reach_of_d = across_of_d*across_of_d + along_of_d*along_of_d;
+  const double reach_of_d = softkin_root(sum_in_reach_of_d);
+  /* S4: its loop does not close */
+  if (!(fabs(level_of_d) <= 1.000000000001*reach_of_d)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S4: its loop does not close", "", 0.0, 0);
+  }
+  const double divisor_of_d = sum_in_reach_of_d > 1e-12 ? sum_in_reach_of_d : 1.0;
+  const double product_in_root_of_d = (level_of_d + reach_of_d)*(level_of_d - reach_of_d);
+  const double root_of_d = softkin_root(-product_in_root_of_d);
+  const double sum_in_d = across_of_d*root_of_d + along_of_d*level_of_d;
+  const double sum_in_d_2 = across_of_d*level_of_d - along_of_d*root_of_d;
+  const double d = softkin_angle_of(sum_in_d_2/divisor_of_d, sum_in_d/divisor_of_d);
+  const double cos_of_d = cos(d);
+  const double sin_of_d = sin(d);
+  const double shared_sum = k->bucket_ear_x_times_rocker_length_times_2*sin_of_d
+      - k->bucket_ear_z_times_rocker_length_times_2*cos_of_d;
+  const double shared_sum_3 = k->bucket_ear_x_times_rocker_length_times_2*cos_of_d
+      + k->bucket_ear_z_times_rocker_length_times_2*sin_of_d;
+  const double shared_sum_3_minus_product_in_level_of_d = shared_sum_3 - k->product_in_level_of_d;
+  const double shared_sum_4 = shared_sum_3_minus_product_in_level_of_d*sin_r - shared_sum*cos_r;
+  /* S4: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(-shared_sum_4 >= -k->shared_product_4)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S4: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double product_in_root_of_b = (k->reach_of_b - level_of_b)*(level_of_b + k->reach_of_b);
+  const double root_of_b = -softkin_root(product_in_root_of_b);
+  const double sum_in_b = k->across_of_b*root_of_b + k->along_of_b*level_of_b;
+  const double sum_in_b_2 = k->across_of_b*level_of_b - k->along_of_b*root_of_b;
+  const double b = softkin_angle_of(k->one_by_divisor_of_b*sum_in_b_2, k->one_by_divisor_of_b*sum_in_b);
+  const double sin_b = sin(b);
+  const double cos_b = cos(b);
+  /* the loop of S2: its equation by what it moves */
+  const double slope_b = k->across_of_b*cos_b - k->along_of_b*sin_b;
+  /* S2: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_b) > k->product_in_rate_b)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double product_in_root_of_c = (k->reach_of_c - level_of_c)*(level_of_c + k->reach_of_c);
+  const double root_of_c = softkin_root(product_in_root_of_c);
+  const double sum_in_c = k->across_of_c*root_of_c + k->along_of_c*level_of_c;
+  const double sum_in_c_2 = k->across_of_c*level_of_c - k->along_of_c*root_of_c;
+  const double c = softkin_angle_of(k->one_by_divisor_of_c*sum_in_c_2, k->one_by_divisor_of_c*sum_in_c);
+  const double sin_of_c = sin(c);
+  const double cos_of_c = cos(c);
+  /* the loop of S3: its equation by what it moves */
+  const double slope_c = k->across_of_c*cos_of_c - k->along_of_c*sin_of_c;
+  /* S3: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_c) > k->product_in_rate_c)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  /* the loop of S4: its equation by what it moves */
+  const double slope_r = k->across_of_r_2*cos_r - k->along_of_r_2*sin_r;
+  /* S4: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_r) > k->product_in_rate_r)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S4: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  /* the loop of S4: its equation by what it moves */
+  const double slope_d = across_of_d*cos_of_d - along_of_d*sin_of_d;
+  /* S4: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_d) > k->product_in_rate_d)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S4: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_a1 = cos(a1);
+  const double motor_s4_by_slope_r = motor_s4/slope_r;
+  const double rate_r = 2.0*motor_s4_by_slope_r;
+  const double rate_d = -shared_sum_4/slope_d;
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double sin_a1 = sin(a1);
+  const double rate_of_y_at_b = k->boom_foot_x*rate_of_sin_a1;
+  const double rate_of_level_of_b = 2.0*motor_s2*speed_s2;
+  const double rate_of_root_of_b = 2.0
+      *(product_in_root_of_b > 0.0 ? 0.5/(product_in_root_of_b > 0.0 ? -root_of_b : 1.0) : 0.0)*level_of_b
+      *rate_of_level_of_b;
+  const double product_in_rate_of_b = k->one_by_divisor_of_b_squared
+      *(sum_in_b*sum_in_b + sum_in_b_2*sum_in_b_2);
+  const double product_in_rate_of_b_2 = product_in_rate_of_b > 0.0 ? product_in_rate_of_b : 1.0;
+  const double rate_of_b = (k->across_of_b_by_divisor_of_b_squared*sum_in_b
+      - k->along_of_b_by_divisor_of_b_squared*sum_in_b_2)*rate_of_level_of_b/product_in_rate_of_b_2
+      - (k->across_of_b_by_divisor_of_b_squared*sum_in_b_2 + k->along_of_b_by_divisor_of_b_squared*sum_in_b)
+      *rate_of_root_of_b/product_in_rate_of_b_2;
+  const double rate_of_cos_b = -rate_of_b*sin_b;
+  const double rate_of_r21_at_b = rate_of_sin_a1*cos_b + rate_of_cos_b*sin_a1;
+  const double rate_of_y_at_c = rate_of_y_at_b + k->boom_length*rate_of_r21_at_b;
+  const double b_plus_c = b + c;
+  const double cos_b_c = cos(b_plus_c);
+  const double sin_b_c = sin(b_plus_c);
+  const double rate_of_level_of_c = 2.0*motor_s3*speed_s3;
+  const double rate_of_root_of_c = -2.0
+      *(product_in_root_of_c > 0.0 ? 0.5/(product_in_root_of_c > 0.0 ? root_of_c : 1.0) : 0.0)*level_of_c
+      *rate_of_level_of_c;
+  const double product_in_rate_of_c = k->one_by_divisor_of_c_squared
+      *(sum_in_c*sum_in_c + sum_in_c_2*sum_in_c_2);
+  const double product_in_rate_of_c_2 = product_in_rate_of_c > 0.0 ? product_in_rate_of_c : 1.0;
+  const double rate_of_c = (k->across_of_c_by_divisor_of_c_squared*sum_in_c
+      - k->along_of_c_by_divisor_of_c_squared*sum_in_c_2)*rate_of_level_of_c/product_in_rate_of_c_2
+      - (k->across_of_c_by_divisor_of_c_squared*sum_in_c_2 + k->along_of_c_by_divisor_of_c_squared*sum_in_c)
+      *rate_of_root_of_c/product_in_rate_of_c_2;
+  const double rate_of_b_plus_rate_of_c = rate_of_b + rate_of_c;
+  const double rate_of_cos_b_c = -rate_of_b_plus_rate_of_c*sin_b_c;
+  const double rate_of_r21_at_b_c = rate_of_sin_a1*cos_b_c + rate_of_cos_b_c*sin_a1;
+  const double rate_of_y_at_d = rate_of_y_at_c + rate_of_r21_at_b_c*k->stick_length;
+  const double b_plus_c_plus_d = b_plus_c + d;
+  const double cos_b_c_d = cos(b_plus_c_plus_d);
+  const double sin_b_c_d = sin(b_plus_c_plus_d);
+  const double rate_of_level_of_r = 2.0*motor_s4*speed_s4;
+  const double rate_of_root_of_r = -2.0
+      *(product_in_root_of_r > 0.0 ? 0.5/(product_in_root_of_r > 0.0 ? root_of_r : 1.0) : 0.0)*level_of_r
+      *rate_of_level_of_r;
+  const double rate_of_cos_r = k->across_of_r_2_by_divisor_of_r_2*rate_of_root_of_r
+      + k->along_of_r_2_by_divisor_of_r_2*rate_of_level_of_r;
+  const double rate_of_sin_r = k->across_of_r_2_by_divisor_of_r_2*rate_of_level_of_r
+      - k->along_of_r_2_by_divisor_of_r_2*rate_of_root_of_r;
+  const double rate_of_along_of_d = k->bucket_ear_z_times_rocker_length_times_2*rate_of_sin_r
+      - k->bucket_ear_x_times_rocker_length_times_2*rate_of_cos_r;
+  const double rate_of_across_of_d = -k->bucket_ear_x_times_rocker_length_times_2*rate_of_sin_r
+      - k->bucket_ear_z_times_rocker_length_times_2*rate_of_cos_r;
+  const double sum_in_reach_of_d_squared = divisor_of_d*divisor_of_d;
+  const double quotient_in_rate_of_d = (sum_in_d*sum_in_d + sum_in_d_2*sum_in_d_2)/sum_in_reach_of_d_squared;
+  const double quotient_in_rate_of_d_2 = 1.0
+      /((quotient_in_rate_of_d > 0.0 ? quotient_in_rate_of_d : 1.0)*sum_in_reach_of_d_squared);
+  const double rate_of_level_of_d = -k->product_in_level_of_d*rate_of_cos_r;
+  const double rate_of_reach_of_d = 2.0
+      *(sum_in_reach_of_d > 0.0 ? 0.5/(sum_in_reach_of_d > 0.0 ? reach_of_d : 1.0) : 0.0)
+      *(across_of_d*rate_of_across_of_d + along_of_d*rate_of_along_of_d);
+  const double rate_of_root_of_d = 2.0*(rate_of_reach_of_d*reach_of_d - level_of_d*rate_of_level_of_d)
+      *(-product_in_root_of_d > 0.0 ? 0.5/(-product_in_root_of_d > 0.0 ? root_of_d : 1.0) : 0.0);
+  const double sum_in_rate_of_d = (along_of_d*sum_in_d_2 - across_of_d*sum_in_d)*quotient_in_rate_of_d_2
+      *rate_of_level_of_d + (across_of_d*sum_in_d_2 + along_of_d*sum_in_d)*quotient_in_rate_of_d_2
+      *rate_of_root_of_d;
+  const double rate_of_d = -sum_in_rate_of_d
+      - (root_of_d*sum_in_d_2 - level_of_d*sum_in_d)*quotient_in_rate_of_d_2*rate_of_across_of_d
+      - (level_of_d*sum_in_d_2 + root_of_d*sum_in_d)*quotient_in_rate_of_d_2*rate_of_along_of_d;
+  const double rate_of_b_plus_rate_of_c_plus_rate_of_d = rate_of_b_plus_rate_of_c + rate_of_d;
+  const double rate_of_cos_b_c_d = -rate_of_b_plus_rate_of_c_plus_rate_of_d*sin_b_c_d;
+  const double rate_of_r21_at_b_c_d = rate_of_sin_a1*cos_b_c_d + rate_of_cos_b_c_d*sin_a1;
+  const double rate_of_y = rate_of_y_at_d + k->bucket_length*rate_of_r21_at_b_c_d;
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double rate_of_sin_b = rate_of_b*cos_b;
+  const double rate_of_z_at_c = -k->boom_length*rate_of_sin_b;
+  const double rate_of_sin_b_c = rate_of_b_plus_rate_of_c*cos_b_c;
+  const double rate_of_z_at_d = rate_of_z_at_c - rate_of_sin_b_c*k->stick_length;
+  const double rate_of_sin_b_c_d = rate_of_b_plus_rate_of_c_plus_rate_of_d*cos_b_c_d;
+  const double rate_of_z = rate_of_z_at_d - k->bucket_length*rate_of_sin_b_c_d;
+  const double rate_of_slope_c = -(k->across_of_c*sin_of_c + k->along_of_c*cos_of_c)*rate_of_c;
+  const double motor_s3_by_slope_c = motor_s3/slope_c;
+  const double rate_of_rate_c = 2.0*(speed_s3 - motor_s3_by_slope_c*rate_of_slope_c)/slope_c;
+  const double rate_of_cos_r_times_shared_sum = rate_of_cos_r*shared_sum;
+  const double rate_of_slope_d = rate_of_cos_r_times_shared_sum
+      - (across_of_d*sin_of_d + along_of_d*cos_of_d)*rate_of_d - rate_of_sin_r*shared_sum_3;
+  const double rate_of_rate_d = (rate_of_cos_r_times_shared_sum
+      + rate_of_d*(shared_sum_3*cos_r + shared_sum*sin_r) - rate_d*rate_of_slope_d
+      - rate_of_sin_r*shared_sum_3_minus_product_in_level_of_d)/slope_d;
+  const double rate_of_x_at_b = k->boom_foot_x*rate_of_cos_a1;
+  const double rate_of_r11_at_b = rate_of_cos_b*cos_a1 + rate_of_cos_a1*cos_b;
+  const double rate_of_x_at_c = rate_of_x_at_b + k->boom_length*rate_of_r11_at_b;
+  const double rate_of_r11_at_b_c = rate_of_cos_b_c*cos_a1 + rate_of_cos_a1*cos_b_c;
+  const double rate_of_x_at_d = rate_of_x_at_c + rate_of_r11_at_b_c*k->stick_length;
+  const double rate_of_r11_at_b_c_d = rate_of_cos_b_c_d*cos_a1 + rate_of_cos_a1*cos_b_c_d;
+  const double rate_of_x = rate_of_x_at_d + k->bucket_length*rate_of_r11_at_b_c_d;
+  const double y_at_b = k->boom_foot_x*sin_a1;
+  const double r21_at_b = cos_b*sin_a1;
+  const double y_at_c = y_at_b + k->boom_length*r21_at_b;
+  const double r21_at_b_c = cos_b_c*sin_a1;
+  const double y_at_d = y_at_c + r21_at_b_c*k->stick_length;
+  const double r21_at_b_c_d = cos_b_c_d*sin_a1;
+  const double y = y_at_d + k->bucket_length*r21_at_b_c_d;
+  const double y_minus_y_at_d = y - y_at_d;
+  const double x_at_b = k->boom_foot_x*cos_a1;
+  const double r11_at_b = cos_a1*cos_b;
+  const double x_at_c = x_at_b + k->boom_length*r11_at_b;
+  const double r11_at_b_c = cos_a1*cos_b_c;
+  const double x_at_d = x_at_c + r11_at_b_c*k->stick_length;
+  const double r11_at_b_c_d = cos_a1*cos_b_c_d;
+  const double x = x_at_d + k->bucket_length*r11_at_b_c_d;
+  const double x_minus_x_at_d = x - x_at_d;
+  const double shared_sum_2 = x_minus_x_at_d*cos_a1 + y_minus_y_at_d*sin_a1;
+  const double shared_product_9 = rate_d*rate_r*speed_s4;
+  const double rate_c = 2.0*motor_s3_by_slope_c;
+  const double rate_c_times_speed_s3 = rate_c*speed_s3;
+  const double motor_s2_by_slope_b = motor_s2/slope_b;
+  const double rate_b = 2.0*motor_s2_by_slope_b;
+  const double rate_b_times_speed_s2 = rate_b*speed_s2;
+  const double shared_sum_5 = rate_b_times_speed_s2 + rate_c_times_speed_s3 + shared_product_9;
+  const double shared_sum_5_times_cos_a1 = shared_sum_5*cos_a1;
+  const double z_at_c = k->boom_foot_z - k->boom_length*sin_b;
+  const double z_at_d = z_at_c - k->stick_length*sin_b_c;
+  const double z = z_at_d - k->bucket_length*sin_b_c_d;
+  const double z_minus_boom_foot_z = z - k->boom_foot_z;
+  const double z_minus_z_at_c = z - z_at_c;
+  const double z_minus_z_at_d = z - z_at_d;
+  const double shared_sum_6 = rate_b_times_speed_s2*z_minus_boom_foot_z
+      + rate_c_times_speed_s3*z_minus_z_at_c + shared_product_9*z_minus_z_at_d;
+  const double rate_of_slope_b = -(k->across_of_b*sin_b + k->along_of_b*cos_b)*rate_of_b;
+  const double rate_of_rate_b = 2.0*(speed_s2 - motor_s2_by_slope_b*rate_of_slope_b)/slope_b;
+  const double rate_of_rate_b_times_speed_s2 = rate_of_rate_b*speed_s2;
+  const double rate_of_slope_r = k->across_of_r_2*rate_of_cos_r - k->along_of_r_2*rate_of_sin_r;
+  const double rate_of_rate_r = 2.0*(speed_s4 - motor_s4_by_slope_r*rate_of_slope_r)/slope_r;
+  const double rate_d_times_rate_of_rate_r = rate_d*rate_of_rate_r;
+  const double shared_sum_5_times_sin_a1 = shared_sum_5*sin_a1;
+  const double shared_sum_7 = rate_of_rate_b_times_speed_s2*z_minus_boom_foot_z
+      + (rate_of_rate_c*z_minus_z_at_c - rate_c*rate_of_z_at_c)*speed_s3
+      + (rate_d_times_rate_of_rate_r*z_minus_z_at_d
+      + (rate_of_rate_d*z_minus_z_at_d - rate_d*rate_of_z_at_d)*rate_r)*speed_s4;
+  const double y_minus_y_at_b = y - y_at_b;
+  const double x_minus_x_at_b = x - x_at_b;
+  const double y_minus_y_at_c = y - y_at_c;
+  const double x_minus_x_at_c = x - x_at_c;
+  const double shared_sum_8 = (rate_b*(rate_of_x_at_b*cos_a1 + rate_of_y_at_b*sin_a1)
+      - rate_of_rate_b*(x_minus_x_at_b*cos_a1 + y_minus_y_at_b*sin_a1))*speed_s2
+      + (rate_c*(rate_of_x_at_c*cos_a1 + rate_of_y_at_c*sin_a1)
+      - rate_of_rate_c*(x_minus_x_at_c*cos_a1 + y_minus_y_at_c*sin_a1))*speed_s3;
+  const double shared_sum_9 = (rate_b_times_speed_s2*x_minus_x_at_b + rate_c_times_speed_s3*x_minus_x_at_c
+      + shared_product_9*x_minus_x_at_d)*rate_of_cos_a1
+      + (rate_b_times_speed_s2*y_minus_y_at_b + rate_c_times_speed_s3*y_minus_y_at_c
+      + shared_product_9*y_minus_y_at_d)*rate_of_sin_a1;
+  accelerations[0] = shared_sum_7*cos_a1 + rate_of_cos_a1*shared_sum_6 + rate_of_z*shared_sum_5_times_cos_a1
+      - rate_of_y*speed_a1;
+  accelerations[1] = rate_of_sin_a1*shared_sum_6 + rate_of_x*speed_a1 + rate_of_z*shared_sum_5_times_sin_a1
+      + shared_sum_7*sin_a1;
+  accelerations[2] = shared_sum_8
+      + ((rate_d*(rate_of_x_at_d*cos_a1 + rate_of_y_at_d*sin_a1) - rate_of_rate_d*shared_sum_2)*rate_r
+      - rate_d_times_rate_of_rate_r*shared_sum_2)*speed_s4 - shared_sum_9
+      - rate_of_x*shared_sum_5_times_cos_a1 - rate_of_y*shared_sum_5_times_sin_a1;
+  accelerations[3] = 2.0*rate_of_cos_a1*shared_sum_5_times_cos_a1
+      + 2.0*rate_of_sin_a1*shared_sum_5_times_sin_a1
+      + (rate_of_rate_b_times_speed_s2 + rate_of_rate_c*speed_s3
+      + (rate_d_times_rate_of_rate_r + rate_of_rate_d*rate_r)*speed_s4)*(cos_a1*cos_a1 + sin_a1*sin_a1);
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -1435,6 +1721,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double quotient_in_margin_lever_r = 1.0/softkin_root(p->rocker_length*root_in_shared_product_8);
   const double half_by_rocker_length_by_rod_length = 0.5/(p->rocker_length*p->rod_length);
   const double quotient_in_margin_lever_d = 0.5/(p->rod_length*root_in_shared_product_7);
+  const double along_of_b_by_divisor_of_b_squared = along_of_b/(divisor_of_b*divisor_of_b);
+  const double across_of_b_by_divisor_of_b_squared = across_of_b/(divisor_of_b*divisor_of_b);
+  const double along_of_c_by_divisor_of_c_squared = along_of_c/(divisor_of_c*divisor_of_c);
+  const double across_of_c_by_divisor_of_c_squared = across_of_c/(divisor_of_c*divisor_of_c);
+  const double along_of_r_2_by_divisor_of_r_2 = along_of_r_2/divisor_of_r_2;
+  const double across_of_r_2_by_divisor_of_r_2 = across_of_r_2/divisor_of_r_2;
+  const double one_by_divisor_of_b_squared = 1.0/(divisor_of_b*divisor_of_b);
+  const double one_by_divisor_of_c_squared = 1.0/(divisor_of_c*divisor_of_c);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1520,6 +1814,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.quotient_in_margin_lever_r = quotient_in_margin_lever_r;
   made.half_by_rocker_length_by_rod_length = half_by_rocker_length_by_rod_length;
   made.quotient_in_margin_lever_d = quotient_in_margin_lever_d;
+  made.along_of_b_by_divisor_of_b_squared = along_of_b_by_divisor_of_b_squared;
+  made.across_of_b_by_divisor_of_b_squared = across_of_b_by_divisor_of_b_squared;
+  made.along_of_c_by_divisor_of_c_squared = along_of_c_by_divisor_of_c_squared;
+  made.across_of_c_by_divisor_of_c_squared = across_of_c_by_divisor_of_c_squared;
+  made.along_of_r_2_by_divisor_of_r_2 = along_of_r_2_by_divisor_of_r_2;
+  made.across_of_r_2_by_divisor_of_r_2 = across_of_r_2_by_divisor_of_r_2;
+  made.one_by_divisor_of_b_squared = one_by_divisor_of_b_squared;
+  made.one_by_divisor_of_c_squared = one_by_divisor_of_c_squared;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(excavator_machine *)machine = made;
   return SOFTKIN_OK;
@@ -1557,6 +1859,7 @@ const softkin_mechanism excavator_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1599,6 +1902,17 @@ softkin_status excavator_branches(const excavator_machine *machine, const softki
 softkin_status excavator_jacobian(const excavator_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&excavator_mechanism, machine, axes, rows, why);
+}
+
+softkin_status excavator_axis_velocities(const excavator_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&excavator_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status excavator_axis_accelerations(const excavator_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&excavator_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status excavator_singularity(const excavator_machine *machine, const double *axes, double *margins,

@@ -138,7 +138,11 @@ typedef struct {
       quotient_in_cos_c, half_by_boom_length_by_stick_length, sum_in_rest_of_motor_s2,
       sum_in_rest_of_motor_s2_2, sum_in_rest_of_motor_s3, sum_in_rest_of_motor_s3_2,
       product_in_rest_of_motor_s4, quotient_in_margin_lever_b, quotient_in_margin_lever_c,
-      quotient_in_margin_lever_r, half_by_rocker_length_by_rod_length, quotient_in_margin_lever_d;
+      quotient_in_margin_lever_r, half_by_rocker_length_by_rod_length, quotient_in_margin_lever_d,
+      along_of_b_by_divisor_of_b_squared, across_of_b_by_divisor_of_b_squared,
+      along_of_c_by_divisor_of_c_squared, across_of_c_by_divisor_of_c_squared,
+      along_of_r_2_by_divisor_of_r_2, across_of_r_2_by_divisor_of_r_2, one_by_divisor_of_b_squared,
+      one_by_divisor_of_c_squared;
   bool single_a1;
 } excavator_machine;
 
@@ -200,6 +204,15 @@ softkin_status excavator_branches(const excavator_machine *machine, const softki
 /** The Jacobian, per radian: 4 rows of 4. */
 softkin_status excavator_jacobian(const excavator_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status excavator_axis_velocities(const excavator_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status excavator_axis_accelerations(const excavator_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 7 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status excavator_singularity(const excavator_machine *machine, const double *axes, double *margins,

@@ -14,6 +14,7 @@
 #include "delta_c.h"
 #include "delta_p3c_type3.h"
 #include "dualscara.h"
+#include "excavator.h"
 #include "gantry2.h"
 #include "gantry3.h"
 #include "gantrycutter2.h"
@@ -41,6 +42,7 @@
 #include "polar.h"
 #include "polar_z.h"
 #include "pos_rrr.h"
+#include "rodpalletizer.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -50,6 +52,8 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "scissorlift.h"
+#include "skewgantry3.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -78,6 +82,8 @@ softkin_regular delta_p3c_type3_regular;
 softkin_regular_all delta_p3c_type3_regular_all;
 softkin_regular dualscara_regular;
 softkin_regular_all dualscara_regular_all;
+softkin_regular excavator_regular;
+softkin_regular_all excavator_regular_all;
 softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
@@ -132,6 +138,8 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular scissorlift_regular;
+softkin_regular skewgantry3_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -167,6 +175,7 @@ const softkin_native softkin_machines[] = {
     {"delta_p3c_type3 72c22f8482557c4c", &delta_p3c_type3_mechanism,
         {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
     {"dualscara c3dc2822c50c4395", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
+    {"excavator ce2e145d52c65fa5", &excavator_mechanism, {excavator_regular, excavator_regular_all}},
     {"gantry2 8960c7905cca5734", &gantry2_mechanism, {gantry2_regular, NULL}},
     {"gantry3 a6783d087cda363d", &gantry3_mechanism, {gantry3_regular, NULL}},
     {"gantrycutter2 2ccfc2ee9449b221", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
@@ -184,9 +193,9 @@ const softkin_native softkin_machines[] = {
     {"kin_5axes a6f9b998fbcf4560", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
     {"mc_kin_type_12_xy e183bd4df5886db4", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
-    {"nutatinghead_cb eac6161ce24d662f", &nutatinghead_cb_mechanism,
+    {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
-    {"nutatingtable_bc 2da61668c9056e41", &nutatingtable_bc_mechanism,
+    {"nutatingtable_bc 7fe2e8827b514731", &nutatingtable_bc_mechanism,
         {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 fbcba3dc3ed70f77", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
     {"p2c_type2 7dd2b9cd88168f65", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
@@ -199,6 +208,7 @@ const softkin_native softkin_machines[] = {
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
     {"pos_rrr 476a397100e31d56", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
     {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 339819f261d7e7aa", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z 4f68cce713dae8e2", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
@@ -210,6 +220,8 @@ const softkin_native softkin_machines[] = {
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
     {"scaraonrail 527407bb63f491e4", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
     {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
+    {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
+    {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
     {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc e52e37a34e57d5b2", &tabletable_bc_mechanism,

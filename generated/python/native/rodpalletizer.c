@@ -629,6 +629,199 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const rodpalletizer_machine *k = machine;
+  const double axis_a1 = axes[0], axis_s2 = axes[1], axis_m3 = axes[2], axis_a4 = axes[3],
+      speed_a1 = speeds[0], speed_s2 = speeds[1], speed_m3 = speeds[2], speed_a4 = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a4, speed_m3, speed_s2, axis_a1, axis_a4,
+      axis_m3, axis_s2}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double motor_s2 = axis_s2 - k->offset_s2;
+  const double level_of_b = motor_s2*motor_s2 - k->sum_in_level_of_b;
+  /* S2: its loop does not close */
+  if (!(fabs(level_of_b) <= k->product_in_pose_is_met)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S2: its loop does not close", "", 0.0, 0);
+  }
+  if (!(2.0*motor_s2 >= -k->machine_scale_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double motor_m3 = SOFTKIN_DEGREE*(axis_m3 - k->offset_m3);
+  const double cos_motor_m3 = cos(motor_m3);
+  const double sin_motor_m3 = sin(motor_m3);
+  const double level_of_c = k->sum_in_level_of_c + k->crank_base_z_times_crank_length_times_2*sin_motor_m3
+      - k->crank_base_x_times_crank_length_times_2*cos_motor_m3;
+  /* the loop of C, solved for C */
+  const double along_of_c = -k->crank_base_x_times_lever_length_times_2
+      - k->crank_length_times_lever_length_times_2*cos_motor_m3;
+  const double across_of_c = k->crank_base_z_times_lever_length_times_2
+      - k->crank_length_times_lever_length_times_2*sin_motor_m3;
+  const double sum_in_reach_of_c = across_of_c*across_of_c + along_of_c*along_of_c;
+  const double reach_of_c = softkin_root(sum_in_reach_of_c);
+  /* M3: its loop does not close */
+  if (!(fabs(level_of_c) <= 1.000000000001*reach_of_c)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "M3: its loop does not close", "", 0.0, 0);
+  }
+  const double divisor_of_c = sum_in_reach_of_c > 1e-12 ? sum_in_reach_of_c : 1.0;
+  const double product_in_root_of_c = (level_of_c + reach_of_c)*(level_of_c - reach_of_c);
+  const double root_of_c = -softkin_root(-product_in_root_of_c);
+  const double sum_in_c = across_of_c*root_of_c + along_of_c*level_of_c;
+  const double sum_in_c_2 = across_of_c*level_of_c - along_of_c*root_of_c;
+  const double c = softkin_angle_of(sum_in_c_2/divisor_of_c, sum_in_c/divisor_of_c);
+  const double cos_c = cos(c);
+  const double shared_sum = k->crank_base_x_times_crank_length_times_2
+      - k->crank_length_times_lever_length_times_2*cos_c;
+  const double sin_c = sin(c);
+  const double shared_sum_2 = k->crank_base_z_times_crank_length_times_2
+      + k->crank_length_times_lever_length_times_2*sin_c;
+  const double shared_sum_3 = shared_sum_2*cos_motor_m3 + shared_sum*sin_motor_m3;
+  /* M3: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(-shared_sum_3 >= -k->product_in_pose_is_met_2)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double product_in_root_of_b = (k->reach_of_b - level_of_b)*(level_of_b + k->reach_of_b);
+  const double root_of_b = softkin_root(product_in_root_of_b);
+  const double sum_in_b = k->across_of_b*root_of_b + k->along_of_b*level_of_b;
+  const double sum_in_b_2 = k->across_of_b*level_of_b - k->along_of_b*root_of_b;
+  const double b = softkin_angle_of(k->one_by_divisor_of_b*sum_in_b_2, k->one_by_divisor_of_b*sum_in_b);
+  const double cos_b = cos(b);
+  const double sin_b = sin(b);
+  /* the loop of S2: its equation by what it moves */
+  const double slope_b = k->across_of_b*cos_b - k->along_of_b*sin_b;
+  /* S2: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_b) > k->product_in_rate_b)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S2: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  /* the loop of M3: its equation by what it moves */
+  const double slope_c = across_of_c*cos_c - along_of_c*sin_c;
+  /* M3: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_c) > k->product_in_rate_c)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "M3: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_a1 = cos(a1);
+  const double motor_s2_by_slope_b = motor_s2/slope_b;
+  const double rate_b = 2.0*motor_s2_by_slope_b;
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double rate_of_y_at_b = rate_of_sin_a1*k->shoulder_offset;
+  const double sin_a1 = sin(a1);
+  const double rate_of_level_of_b = 2.0*motor_s2*speed_s2;
+  const double rate_of_root_of_b = -2.0
+      *(product_in_root_of_b > 0.0 ? 0.5/(product_in_root_of_b > 0.0 ? root_of_b : 1.0) : 0.0)*level_of_b
+      *rate_of_level_of_b;
+  const double product_in_rate_of_b = k->one_by_divisor_of_b_squared
+      *(sum_in_b*sum_in_b + sum_in_b_2*sum_in_b_2);
+  const double product_in_rate_of_b_2 = product_in_rate_of_b > 0.0 ? product_in_rate_of_b : 1.0;
+  const double rate_of_b = (k->across_of_b_by_divisor_of_b_squared*sum_in_b
+      - k->along_of_b_by_divisor_of_b_squared*sum_in_b_2)*rate_of_level_of_b/product_in_rate_of_b_2
+      - (k->across_of_b_by_divisor_of_b_squared*sum_in_b_2 + k->along_of_b_by_divisor_of_b_squared*sum_in_b)
+      *rate_of_root_of_b/product_in_rate_of_b_2;
+  const double rate_of_sin_b = rate_of_b*cos_b;
+  const double rate_of_r23_at_b = rate_of_sin_a1*sin_b + rate_of_sin_b*sin_a1;
+  const double rate_of_y_at_b_c = rate_of_y_at_b + k->link_length_1*rate_of_r23_at_b;
+  const double rate_of_cos_motor_m3 = -speed_m3*sin_motor_m3;
+  const double rate_of_along_of_c = -k->crank_length_times_lever_length_times_2*rate_of_cos_motor_m3;
+  const double rate_of_sin_motor_m3 = speed_m3*cos_motor_m3;
+  const double rate_of_across_of_c = -k->crank_length_times_lever_length_times_2*rate_of_sin_motor_m3;
+  const double sum_in_reach_of_c_squared = divisor_of_c*divisor_of_c;
+  const double quotient_in_rate_of_c = (sum_in_c*sum_in_c + sum_in_c_2*sum_in_c_2)/sum_in_reach_of_c_squared;
+  const double quotient_in_rate_of_c_2 = 1.0
+      /((quotient_in_rate_of_c > 0.0 ? quotient_in_rate_of_c : 1.0)*sum_in_reach_of_c_squared);
+  const double rate_of_level_of_c = k->crank_base_z_times_crank_length_times_2*rate_of_sin_motor_m3
+      - k->crank_base_x_times_crank_length_times_2*rate_of_cos_motor_m3;
+  const double rate_of_reach_of_c = 2.0
+      *(sum_in_reach_of_c > 0.0 ? 0.5/(sum_in_reach_of_c > 0.0 ? reach_of_c : 1.0) : 0.0)
+      *(across_of_c*rate_of_across_of_c + along_of_c*rate_of_along_of_c);
+  const double rate_of_root_of_c = 2.0
+      *(-product_in_root_of_c > 0.0 ? 0.5/(-product_in_root_of_c > 0.0 ? -root_of_c : 1.0) : 0.0)
+      *(level_of_c*rate_of_level_of_c - rate_of_reach_of_c*reach_of_c);
+  const double sum_in_rate_of_c = (along_of_c*sum_in_c_2 - across_of_c*sum_in_c)*quotient_in_rate_of_c_2
+      *rate_of_level_of_c + (across_of_c*sum_in_c_2 + along_of_c*sum_in_c)*quotient_in_rate_of_c_2
+      *rate_of_root_of_c;
+  const double rate_of_c = -sum_in_rate_of_c
+      - (root_of_c*sum_in_c_2 - level_of_c*sum_in_c)*quotient_in_rate_of_c_2*rate_of_across_of_c
+      - (level_of_c*sum_in_c_2 + root_of_c*sum_in_c)*quotient_in_rate_of_c_2*rate_of_along_of_c;
+  const double rate_of_cos_c = -rate_of_c*sin_c;
+  const double rate_of_r21_at_c = rate_of_sin_a1*cos_c + rate_of_cos_c*sin_a1;
+  const double rate_of_y_at_c = rate_of_y_at_b_c + k->link_length_2*rate_of_r21_at_c;
+  const double rate_of_y_at_a4 = rate_of_y_at_c + rate_of_sin_a1*k->wrist_offset_x;
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double rate_of_cos_b = -rate_of_b*sin_b;
+  const double rate_of_z_at_b_c = k->link_length_1*rate_of_cos_b;
+  const double rate_of_slope_b = -(k->across_of_b*sin_b + k->along_of_b*cos_b)*rate_of_b;
+  const double rate_of_rate_b = 2.0*(speed_s2 - motor_s2_by_slope_b*rate_of_slope_b)/slope_b;
+  const double rate_c = shared_sum_3/slope_c;
+  const double rate_of_slope_c = (rate_of_cos_motor_m3*sin_c - rate_of_sin_motor_m3*cos_c)
+      *k->crank_length_times_lever_length_times_2 - (across_of_c*sin_c + along_of_c*cos_c)*rate_of_c;
+  const double rate_of_rate_c = (rate_of_cos_motor_m3*shared_sum_2 + rate_of_sin_motor_m3*shared_sum
+      + k->crank_length_times_lever_length_times_2*rate_of_c*(cos_c*cos_motor_m3 + sin_c*sin_motor_m3)
+      - rate_c*rate_of_slope_c)/slope_c;
+  const double rate_of_x_at_b = rate_of_cos_a1*k->shoulder_offset;
+  const double rate_of_r13_at_b = rate_of_sin_b*cos_a1 + rate_of_cos_a1*sin_b;
+  const double rate_of_x_at_b_c = rate_of_x_at_b + k->link_length_1*rate_of_r13_at_b;
+  const double rate_of_r11_at_c = rate_of_cos_c*cos_a1 + rate_of_cos_a1*cos_c;
+  const double rate_of_x_at_c = rate_of_x_at_b_c + k->link_length_2*rate_of_r11_at_c;
+  const double rate_of_x_at_a4 = rate_of_x_at_c + rate_of_cos_a1*k->wrist_offset_x;
+  const double y_at_b = k->shoulder_offset*sin_a1;
+  const double r23_at_b = sin_a1*sin_b;
+  const double y_at_b_c = y_at_b + k->link_length_1*r23_at_b;
+  const double r21_at_c = cos_c*sin_a1;
+  const double y_at_c = y_at_b_c + k->link_length_2*r21_at_c;
+  const double y_at_a4 = y_at_c + k->wrist_offset_x*sin_a1;
+  const double x_at_b = k->shoulder_offset*cos_a1;
+  const double r13_at_b = cos_a1*sin_b;
+  const double x_at_b_c = x_at_b + k->link_length_1*r13_at_b;
+  const double r11_at_c = cos_a1*cos_c;
+  const double x_at_c = x_at_b_c + k->link_length_2*r11_at_c;
+  const double x_at_a4 = x_at_c + k->wrist_offset_x*cos_a1;
+  const double y_at_a4_minus_y_at_b_c = y_at_a4 - y_at_b_c;
+  const double x_at_a4_minus_x_at_b_c = x_at_a4 - x_at_b_c;
+  const double z_at_b_c = k->base_height + k->link_length_1*cos_b;
+  const double z_at_c = z_at_b_c - k->link_length_2*sin_c;
+  const double z = k->wrist_offset_z + z_at_c;
+  const double z_minus_z_at_b_c = z - z_at_b_c;
+  const double shared_sum_4 = k->base_height + z_minus_z_at_b_c - z;
+  const double shared_sum_5 = z_at_c + z_minus_z_at_b_c - z;
+  const double speed_s2_times_rate_of_rate_b = rate_of_rate_b*speed_s2;
+  const double rate_c_times_speed_m3 = rate_c*speed_m3;
+  const double rate_b_times_speed_s2 = rate_b*speed_s2;
+  const double shared_sum_6 = rate_b_times_speed_s2 - rate_c_times_speed_m3;
+  const double shared_sum_6_times_cos_a1 = shared_sum_6*cos_a1;
+  const double shared_sum_7 = (z_at_b_c - k->base_height)*rate_b_times_speed_s2
+      + (z_at_c - z_at_b_c)*rate_c_times_speed_m3;
+  const double shared_sum_6_times_sin_a1 = shared_sum_6*sin_a1;
+  const double rate_of_sin_c = rate_of_c*cos_c;
+  const double rate_of_z_at_c = rate_of_z_at_b_c - k->link_length_2*rate_of_sin_c;
+  const double rate_c_times_rate_of_z_at_c = rate_c*rate_of_z_at_c;
+  const double shared_sum_8 = ((x_at_b_c - x_at_b)*rate_b_times_speed_s2
+      + (x_at_c - x_at_b_c)*rate_c_times_speed_m3)*rate_of_cos_a1
+      + (rate_c*(rate_of_x_at_c*cos_a1 + rate_of_y_at_c*sin_a1)
+      + rate_of_rate_c*((x_at_a4_minus_x_at_b_c + x_at_c - x_at_a4)*cos_a1
+      + (y_at_a4_minus_y_at_b_c + y_at_c - y_at_a4)*sin_a1))*speed_m3;
+  const double shared_sum_9 = rate_of_x_at_b_c*shared_sum_6_times_cos_a1
+      + rate_of_y_at_b_c*shared_sum_6_times_sin_a1
+      - (rate_b_times_speed_s2*(y_at_b - y_at_b_c) + rate_c_times_speed_m3*(y_at_b_c - y_at_c))
+      *rate_of_sin_a1;
+  accelerations[0] = rate_of_cos_a1*shared_sum_7 + rate_of_z_at_b_c*shared_sum_6_times_cos_a1
+      + speed_m3*(rate_c_times_rate_of_z_at_c*cos_a1 + rate_of_rate_c*shared_sum_5*cos_a1)
+      - rate_of_y_at_a4*speed_a1 - shared_sum_4*speed_s2_times_rate_of_rate_b*cos_a1;
+  accelerations[1] = rate_of_sin_a1*shared_sum_7 + rate_of_x_at_a4*speed_a1
+      + rate_of_z_at_b_c*shared_sum_6_times_sin_a1
+      + (rate_c_times_rate_of_z_at_c*sin_a1 + rate_of_rate_c*shared_sum_5*sin_a1)*speed_m3
+      - shared_sum_4*speed_s2_times_rate_of_rate_b*sin_a1;
+  accelerations[2] = (rate_b*(rate_of_x_at_b*cos_a1 + rate_of_y_at_b*sin_a1)
+      + rate_of_rate_b*((x_at_a4_minus_x_at_b_c + x_at_b - x_at_a4)*cos_a1
+      + (y_at_a4_minus_y_at_b_c + y_at_b - y_at_a4)*sin_a1))*speed_s2 - shared_sum_8 - shared_sum_9;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -1075,6 +1268,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double quotient_in_margin_lever_b = 1.0/softkin_root(p->cylinder_eye*root_in_rate_b);
   const double half_by_crank_length_by_rod_length = 0.5/(p->crank_length*p->rod_length);
   const double half_by_lever_length_by_rod_length = 0.5/(p->lever_length*p->rod_length);
+  const double along_of_b_by_divisor_of_b_squared = along_of_b/(divisor_of_b*divisor_of_b);
+  const double across_of_b_by_divisor_of_b_squared = across_of_b/(divisor_of_b*divisor_of_b);
+  const double one_by_divisor_of_b_squared = 1.0/(divisor_of_b*divisor_of_b);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1130,6 +1326,9 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.quotient_in_margin_lever_b = quotient_in_margin_lever_b;
   made.half_by_crank_length_by_rod_length = half_by_crank_length_by_rod_length;
   made.half_by_lever_length_by_rod_length = half_by_lever_length_by_rod_length;
+  made.along_of_b_by_divisor_of_b_squared = along_of_b_by_divisor_of_b_squared;
+  made.across_of_b_by_divisor_of_b_squared = across_of_b_by_divisor_of_b_squared;
+  made.one_by_divisor_of_b_squared = one_by_divisor_of_b_squared;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(rodpalletizer_machine *)machine = made;
   return SOFTKIN_OK;
@@ -1167,6 +1366,7 @@ const softkin_mechanism rodpalletizer_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1209,6 +1409,17 @@ softkin_status rodpalletizer_branches(const rodpalletizer_machine *machine, cons
 softkin_status rodpalletizer_jacobian(const rodpalletizer_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&rodpalletizer_mechanism, machine, axes, rows, why);
+}
+
+softkin_status rodpalletizer_axis_velocities(const rodpalletizer_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&rodpalletizer_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status rodpalletizer_axis_accelerations(const rodpalletizer_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&rodpalletizer_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status rodpalletizer_singularity(const rodpalletizer_machine *machine, const double *axes,

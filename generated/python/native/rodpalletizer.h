@@ -116,7 +116,8 @@ typedef struct {
       link_length_1_plus_link_length_2, half_by_link_length_1_by_link_length_2,
       quotient_in_closed_cos_swing_c_from_b, shoulder_offset_plus_wrist_offset_x,
       base_height_plus_wrist_offset_z, quotient_in_margin_lever_b, half_by_crank_length_by_rod_length,
-      half_by_lever_length_by_rod_length;
+      half_by_lever_length_by_rod_length, along_of_b_by_divisor_of_b_squared,
+      across_of_b_by_divisor_of_b_squared, one_by_divisor_of_b_squared;
   bool single_a1, single_a4;
 } rodpalletizer_machine;
 
@@ -178,6 +179,15 @@ softkin_status rodpalletizer_branches(const rodpalletizer_machine *machine, cons
 /** The Jacobian, per radian: 4 rows of 4. */
 softkin_status rodpalletizer_jacobian(const rodpalletizer_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status rodpalletizer_axis_velocities(const rodpalletizer_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status rodpalletizer_axis_accelerations(const rodpalletizer_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 5 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status rodpalletizer_singularity(const rodpalletizer_machine *machine, const double *axes,

@@ -256,6 +256,40 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const scissorlift_machine *k = machine;
+  const double axis_s1 = axes[0], axis_a2 = axes[1], speed_s1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a2, speed_s1, axis_a2, axis_s1}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double motor_s1 = axis_s1 - k->offset_s1;
+  const double rest_of_h = k->beam_length_squared - motor_s1*motor_s1;
+  /* S1: its loop does not close */
+  if (!(rest_of_h >= -1e-12*fabs(rest_of_h))) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "S1: its loop does not close", "", 0.0, 0);
+  }
+  if (!(2.0*motor_s1 >= -k->beam_length_times_free_angle)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S1: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double h = softkin_root(rest_of_h);
+  const double slope_h = 2.0*h; /* the loop of S1: its equation by what it moves */
+  /* S1: in the other assembly mode, or too close to a type 2 singularity */
+  if (!(fabs(slope_h) > k->product_in_rate_h)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "S1: in the other assembly mode, or too close to a type 2 singularity", "", 0.0, 0);
+  }
+  const double rate_of_rest_of_h = -2.0*motor_s1*speed_s1;
+  const double rate_of_h = (rest_of_h > 0.0 ? 0.5/(rest_of_h > 0.0 ? h : 1.0) : 0.0)*rate_of_rest_of_h;
+  const double rate_of_slope_h = 2.0*rate_of_h;
+  const double rate_of_rate_h = 2.0*(motor_s1*rate_of_slope_h/slope_h - speed_s1)/slope_h;
+  accelerations[0] = rate_of_rate_h*speed_s1;
+  accelerations[1] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const scissorlift_parameters *p = parameters;
@@ -327,6 +361,7 @@ const softkin_mechanism scissorlift_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void scissorlift_defaults(scissorlift_parameters *parameters) {
@@ -368,6 +403,17 @@ softkin_status scissorlift_branches(const scissorlift_machine *machine, const so
 softkin_status scissorlift_jacobian(const scissorlift_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&scissorlift_mechanism, machine, axes, rows, why);
+}
+
+softkin_status scissorlift_axis_velocities(const scissorlift_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&scissorlift_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status scissorlift_axis_accelerations(const scissorlift_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&scissorlift_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status scissorlift_singularity(const scissorlift_machine *machine, const double *axes,

@@ -177,6 +177,21 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], speed_x = speeds[0],
+      speed_y = speeds[1], speed_z = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_x, speed_y, speed_z, axis_x, axis_y, axis_z}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  accelerations[2] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const skewgantry3_parameters *p = parameters;
@@ -245,6 +260,7 @@ const softkin_mechanism skewgantry3_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void skewgantry3_defaults(skewgantry3_parameters *parameters) {
@@ -286,6 +302,17 @@ softkin_status skewgantry3_branches(const skewgantry3_machine *machine, const so
 softkin_status skewgantry3_jacobian(const skewgantry3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&skewgantry3_mechanism, machine, axes, rows, why);
+}
+
+softkin_status skewgantry3_axis_velocities(const skewgantry3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&skewgantry3_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status skewgantry3_axis_accelerations(const skewgantry3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&skewgantry3_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status skewgantry3_singularity(const skewgantry3_machine *machine, const double *axes,

@@ -109,7 +109,7 @@ class Path:
         duration: the seconds that each line takes, at constant speed. At a corner the speed on the line that ends
         there. Central differences over 1e-5 of a line, where the way before and behind is free.
         """
-        lines = (min(max(_line(place), 0), max(len(self.corners) - 2, 0)) for place in self.places)
+        lines = (min(max(line_of(place), 0), max(len(self.corners) - 2, 0)) for place in self.places)
         return tuple(self._velocity(k, line, duration) for k, line in enumerate(lines))
 
     def _velocity(self, sample: int, line: int, duration: float = 1.0) -> Reals:
@@ -118,7 +118,7 @@ class Path:
         first, second = max(place - _APART, float(line)), min(place + _APART, line + 1.0, self.places[-1])
         if not second > first:
             return (0.0,) * len(axes)
-        before, behind = (_solved(self, at, axes) for at in (first, second))
+        before, behind = (solved(self, at, axes) for at in (first, second))
         if isinstance(before, Diagnosis) or isinstance(behind, Diagnosis):
             return (float("nan"),) * len(axes)
         time = (second - first) * duration
@@ -146,13 +146,26 @@ class Path:
 
         return _timed.along(self, limits, step)
 
+    def feeds(self, velocities: Numbers | None = None, accelerations: Numbers | None = None) -> Reals:
+        """The largest constant speed of the tool that the limits of the axes allow at every sample.
+
+        velocities, accelerations: the largest size that each may have, one positive number for each axis, per second in
+        the unit of the axis; None for no limit. The speed is in lengths a second, of a line that only turns in degrees
+        a second; the smallest one is what the whole path may be driven with. Infinite where no axis moves or no limit
+        is given, NaN where the way before and behind is not free. At a corner the speed on the line that ends there.
+        Raises BAD_INPUT for limits that are not positive.
+        """
+        from softkin import _feeds
+
+        return _feeds.along(self, velocities, accelerations)
+
     def fastest(self, duration: float = 1.0) -> Reals:
         """The highest speed of each axis at the samples, as a positive number: see `velocities`."""
         columns = zip(*self.velocities(duration), strict=True)
         return tuple([max(map(abs, column)) for column in columns])
 
 
-def _line(place: float) -> int:
+def line_of(place: float) -> int:
     """The number of the line at a place; a corner belongs to the line that ends there."""
     whole = floor(place)
     return whole - 1 if whole == place and whole > 0 else whole
@@ -163,7 +176,7 @@ def _frame(corners: Sequence[Frame], place: float) -> Frame:
     return corners[0] if line < 0 else between(corners[line], corners[line + 1], place - line)
 
 
-def _solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
+def solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
     return _Follower(path.robot, path.corners, path.signs).solve(place, near)
 
 

@@ -73,7 +73,6 @@ class Constants:
         sin_nutation = sin(DEGREE * nutation)
         cos_nutation_squared = cos_nutation * cos_nutation
         cos_nutation_times_sin_nutation = cos_nutation * sin_nutation
-        shared_size = abs(cos_nutation_squared - 1.0)
         pivot_length_times_cos_nutation_squared = pivot_length * cos_nutation * cos_nutation
         one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0 * cos_nutation * cos_nutation
         product_in_joint_x = pivot_length * cos_nutation * sin_nutation
@@ -84,7 +83,7 @@ class Constants:
         self.offset_x, self.offset_y, self.offset_z, self.offset_c = offset_x, offset_y, offset_z, offset_c
         self.offset_b, self.cos_nutation, self.sin_nutation = offset_b, cos_nutation, sin_nutation
         self.cos_nutation_squared = cos_nutation_squared
-        self.cos_nutation_times_sin_nutation, self.shared_size = cos_nutation_times_sin_nutation, shared_size
+        self.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation
         self.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared
         self.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2
         self.product_in_joint_x = product_in_joint_x
@@ -103,7 +102,7 @@ class NutatingHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_NutatingHead_CB"
-    KEY = "nutatinghead_cb eac6161ce24d662f"
+    KEY = "nutatinghead_cb 16b20da1ddff4623"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -346,12 +345,9 @@ class NutatingHeadCB(Mechanism):
         pivot_length = k.pivot_length
         pivot_length_times_cos_nutation_squared = k.pivot_length_times_cos_nutation_squared
         pivot_length_times_sin_nutation, product_in_joint_x = k.pivot_length_times_sin_nutation, k.product_in_joint_x
-        shared_size, sin_nutation, single_b, single_c = k.shared_size, k.sin_nutation, k.single_b, k.single_c
+        sin_nutation, single_b, single_c = k.sin_nutation, k.single_b, k.single_c
         if not reasonable(x, y, z, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # b: its effective length is too short
-        if not (shared_size > 5e-10):
-            return Diagnosis(Status.UNREACHABLE, "B: its effective length is too short", 0.0)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0

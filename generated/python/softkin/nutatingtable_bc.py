@@ -74,13 +74,12 @@ class Constants:
         sin_nutation = sin(DEGREE * nutation)
         cos_nutation_times_sin_nutation = cos_nutation * sin_nutation
         cos_nutation_squared = cos_nutation * cos_nutation
-        shared_size = abs(cos_nutation_squared - 1.0)
         one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0 * cos_nutation * cos_nutation
         self.pivot_x, self.pivot_z, self.tool_length, self.offset_x = pivot_x, pivot_z, tool_length, offset_x
         self.offset_y, self.offset_z, self.offset_b, self.offset_c = offset_y, offset_z, offset_b, offset_c
         self.cos_nutation, self.sin_nutation = cos_nutation, sin_nutation
         self.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation
-        self.cos_nutation_squared, self.shared_size = cos_nutation_squared, shared_size
+        self.cos_nutation_squared = cos_nutation_squared
         self.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2
 
 
@@ -93,7 +92,7 @@ class NutatingTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_NutatingTable_BC"
-    KEY = "nutatingtable_bc 2da61668c9056e41"
+    KEY = "nutatingtable_bc 7fe2e8827b514731"
     AXES = (
         Axis(
             name="X",
@@ -349,13 +348,10 @@ class NutatingTableBC(Mechanism):
         mid_b, mid_c, offset_b, offset_c, offset_x = k.mid_b, k.mid_c, k.offset_b, k.offset_c, k.offset_x
         offset_y, offset_z = k.offset_y, k.offset_z
         one_minus_cos_nutation_squared_times_2, pivot_x = k.one_minus_cos_nutation_squared_times_2, k.pivot_x
-        pivot_z, shared_size, sin_nutation, single_b = k.pivot_z, k.shared_size, k.sin_nutation, k.single_b
-        single_c, tool_length = k.single_c, k.tool_length
+        pivot_z, sin_nutation, single_b, single_c = k.pivot_z, k.sin_nutation, k.single_b, k.single_c
+        tool_length = k.tool_length
         if not reasonable(x, y, z, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # b: its effective length is too short
-        if not (shared_size > 5e-10):
-            return Diagnosis(Status.UNREACHABLE, "B: its effective length is too short", 0.0)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0

@@ -128,6 +128,9 @@ class Constants:
         quotient_in_margin_lever_b = 1.0 / root(cylinder_eye * root_in_rate_b)
         half_by_crank_length_by_rod_length = 0.5 / (crank_length * rod_length)
         half_by_lever_length_by_rod_length = 0.5 / (lever_length * rod_length)
+        along_of_b_by_divisor_of_b_squared = along_of_b / (divisor_of_b * divisor_of_b)
+        across_of_b_by_divisor_of_b_squared = across_of_b / (divisor_of_b * divisor_of_b)
+        one_by_divisor_of_b_squared = 1.0 / (divisor_of_b * divisor_of_b)
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.cylinder_base_x, self.cylinder_base_z, self.cylinder_eye = cylinder_base_x, cylinder_base_z, cylinder_eye
@@ -158,6 +161,9 @@ class Constants:
         self.quotient_in_margin_lever_b = quotient_in_margin_lever_b
         self.half_by_crank_length_by_rod_length = half_by_crank_length_by_rod_length
         self.half_by_lever_length_by_rod_length = half_by_lever_length_by_rod_length
+        self.along_of_b_by_divisor_of_b_squared = along_of_b_by_divisor_of_b_squared
+        self.across_of_b_by_divisor_of_b_squared = across_of_b_by_divisor_of_b_squared
+        self.one_by_divisor_of_b_squared = one_by_divisor_of_b_squared
 
 
 class RodPalletizer(OffsetKinematics, TwistChoice):
@@ -169,7 +175,7 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_RodPalletizer"
-    KEY = "rodpalletizer e1889874a996966f"
+    KEY = "rodpalletizer 11103369accd5739"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="S2", kind="linear", unit="u", meaning="Cylinder of the rear arm: its length", multi_turn=False),
@@ -1241,6 +1247,233 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0, 1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_s2, axis_m3, axis_a4 = axes
+        speed_a1, speed_s2, speed_m3, speed_a4 = speeds
+        k = self._constants
+        across_of_b, across_of_b_by_divisor_of_b_squared = k.across_of_b, k.across_of_b_by_divisor_of_b_squared
+        along_of_b, along_of_b_by_divisor_of_b_squared = k.along_of_b, k.along_of_b_by_divisor_of_b_squared
+        base_height, crank_base_x_times_crank_length_times_2 = k.base_height, k.crank_base_x_times_crank_length_times_2
+        crank_base_x_times_lever_length_times_2 = k.crank_base_x_times_lever_length_times_2
+        crank_base_z_times_crank_length_times_2 = k.crank_base_z_times_crank_length_times_2
+        crank_base_z_times_lever_length_times_2 = k.crank_base_z_times_lever_length_times_2
+        crank_length_times_lever_length_times_2 = k.crank_length_times_lever_length_times_2
+        link_length_1, link_length_2 = k.link_length_1, k.link_length_2
+        machine_scale_times_rounding, offset_a1, offset_m3 = k.machine_scale_times_rounding, k.offset_a1, k.offset_m3
+        offset_s2, one_by_divisor_of_b = k.offset_s2, k.one_by_divisor_of_b
+        one_by_divisor_of_b_squared, product_in_pose_is_met = k.one_by_divisor_of_b_squared, k.product_in_pose_is_met
+        product_in_pose_is_met_2, product_in_rate_b = k.product_in_pose_is_met_2, k.product_in_rate_b
+        product_in_rate_c, reach_of_b, shoulder_offset = k.product_in_rate_c, k.reach_of_b, k.shoulder_offset
+        sum_in_level_of_b, sum_in_level_of_c = k.sum_in_level_of_b, k.sum_in_level_of_c
+        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
+        if not reasonable(speed_a1, speed_a4, speed_m3, speed_s2, axis_a1, axis_a4, axis_m3, axis_s2):
+            return Status.BAD_INPUT
+        motor_s2 = axis_s2 - offset_s2
+        level_of_b = motor_s2 * motor_s2 - sum_in_level_of_b
+        # S2: its loop does not close
+        if not (abs(level_of_b) <= product_in_pose_is_met and 2.0 * motor_s2 >= -machine_scale_times_rounding):
+            return Status.IMPOSSIBLE
+        motor_m3 = DEGREE * (axis_m3 - offset_m3)
+        cos_motor_m3 = cos(motor_m3)
+        sin_motor_m3 = sin(motor_m3)
+        level_of_c = (
+            sum_in_level_of_c
+            + crank_base_z_times_crank_length_times_2 * sin_motor_m3
+            - crank_base_x_times_crank_length_times_2 * cos_motor_m3
+        )
+        # the loop of C, solved for C
+        along_of_c = -crank_base_x_times_lever_length_times_2 - crank_length_times_lever_length_times_2 * cos_motor_m3
+        across_of_c = crank_base_z_times_lever_length_times_2 - crank_length_times_lever_length_times_2 * sin_motor_m3
+        sum_in_reach_of_c = across_of_c * across_of_c + along_of_c * along_of_c
+        reach_of_c = sqrt(sum_in_reach_of_c) if sum_in_reach_of_c > 0.0 else 0.0
+        # M3: its loop does not close
+        if not (abs(level_of_c) <= 1.000000000001 * reach_of_c):
+            return Status.IMPOSSIBLE
+        divisor_of_c = sum_in_reach_of_c if sum_in_reach_of_c > 1e-12 else 1.0
+        product_in_root_of_c = (level_of_c + reach_of_c) * (level_of_c - reach_of_c)
+        root_of_c = -root(-product_in_root_of_c)
+        sum_in_c = across_of_c * root_of_c + along_of_c * level_of_c
+        sum_in_c_2 = across_of_c * level_of_c - along_of_c * root_of_c
+        c = arctan2(sum_in_c_2 / divisor_of_c + 0.0, sum_in_c / divisor_of_c + 0.0)
+        cos_c = cos(c)
+        shared_sum = crank_base_x_times_crank_length_times_2 - crank_length_times_lever_length_times_2 * cos_c
+        sin_c = sin(c)
+        shared_sum_2 = crank_base_z_times_crank_length_times_2 + crank_length_times_lever_length_times_2 * sin_c
+        shared_sum_3 = shared_sum_2 * cos_motor_m3 + shared_sum * sin_motor_m3
+        # M3: in the other assembly mode, or too close to a type 2 singularity
+        if not (-shared_sum_3 >= -product_in_pose_is_met_2):
+            return Status.IMPOSSIBLE
+        product_in_root_of_b = (reach_of_b - level_of_b) * (level_of_b + reach_of_b)
+        root_of_b = sqrt(product_in_root_of_b) if product_in_root_of_b > 0.0 else 0.0
+        sum_in_b = across_of_b * root_of_b + along_of_b * level_of_b
+        sum_in_b_2 = across_of_b * level_of_b - along_of_b * root_of_b
+        b = arctan2(one_by_divisor_of_b * sum_in_b_2 + 0.0, one_by_divisor_of_b * sum_in_b + 0.0)
+        cos_b = cos(b)
+        sin_b = sin(b)
+        slope_b = across_of_b * cos_b - along_of_b * sin_b  # the loop of S2: its equation by what it moves
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        if not (abs(slope_b) > product_in_rate_b):
+            return Status.IMPOSSIBLE
+        slope_c = across_of_c * cos_c - along_of_c * sin_c  # the loop of M3: its equation by what it moves
+        # M3: in the other assembly mode, or too close to a type 2 singularity
+        if not (abs(slope_c) > product_in_rate_c):
+            return Status.IMPOSSIBLE
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        cos_a1 = cos(a1)
+        motor_s2_by_slope_b = motor_s2 / slope_b
+        rate_b = 2.0 * motor_s2_by_slope_b
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        rate_of_y_at_b = rate_of_sin_a1 * shoulder_offset
+        sin_a1 = sin(a1)
+        rate_of_level_of_b = 2.0 * motor_s2 * speed_s2
+        rate_of_root_of_b = (
+            -2.0
+            * (0.5 / (root_of_b if product_in_root_of_b > 0.0 else 1.0) if product_in_root_of_b > 0.0 else 0.0)
+            * level_of_b
+            * rate_of_level_of_b
+        )
+        product_in_rate_of_b = one_by_divisor_of_b_squared * (sum_in_b * sum_in_b + sum_in_b_2 * sum_in_b_2)
+        product_in_rate_of_b_2 = product_in_rate_of_b if product_in_rate_of_b > 0.0 else 1.0
+        rate_of_b = (
+            across_of_b_by_divisor_of_b_squared * sum_in_b - along_of_b_by_divisor_of_b_squared * sum_in_b_2
+        ) * rate_of_level_of_b / product_in_rate_of_b_2 - (
+            across_of_b_by_divisor_of_b_squared * sum_in_b_2 + along_of_b_by_divisor_of_b_squared * sum_in_b
+        ) * rate_of_root_of_b / product_in_rate_of_b_2
+        rate_of_sin_b = rate_of_b * cos_b
+        rate_of_r23_at_b = rate_of_sin_a1 * sin_b + rate_of_sin_b * sin_a1
+        rate_of_y_at_b_c = rate_of_y_at_b + link_length_1 * rate_of_r23_at_b
+        rate_of_cos_motor_m3 = -speed_m3 * sin_motor_m3
+        rate_of_along_of_c = -crank_length_times_lever_length_times_2 * rate_of_cos_motor_m3
+        rate_of_sin_motor_m3 = speed_m3 * cos_motor_m3
+        rate_of_across_of_c = -crank_length_times_lever_length_times_2 * rate_of_sin_motor_m3
+        sum_in_reach_of_c_squared = divisor_of_c * divisor_of_c
+        quotient_in_rate_of_c = (sum_in_c * sum_in_c + sum_in_c_2 * sum_in_c_2) / sum_in_reach_of_c_squared
+        quotient_in_rate_of_c_2 = 1.0 / (
+            (quotient_in_rate_of_c if quotient_in_rate_of_c > 0.0 else 1.0) * sum_in_reach_of_c_squared
+        )
+        rate_of_level_of_c = (
+            crank_base_z_times_crank_length_times_2 * rate_of_sin_motor_m3
+            - crank_base_x_times_crank_length_times_2 * rate_of_cos_motor_m3
+        )
+        rate_of_reach_of_c = (
+            2.0
+            * (0.5 / (reach_of_c if sum_in_reach_of_c > 0.0 else 1.0) if sum_in_reach_of_c > 0.0 else 0.0)
+            * (across_of_c * rate_of_across_of_c + along_of_c * rate_of_along_of_c)
+        )
+        rate_of_root_of_c = (
+            2.0
+            * (0.5 / (-root_of_c if -product_in_root_of_c > 0.0 else 1.0) if -product_in_root_of_c > 0.0 else 0.0)
+            * (level_of_c * rate_of_level_of_c - rate_of_reach_of_c * reach_of_c)
+        )
+        sum_in_rate_of_c = (
+            along_of_c * sum_in_c_2 - across_of_c * sum_in_c
+        ) * quotient_in_rate_of_c_2 * rate_of_level_of_c + (
+            across_of_c * sum_in_c_2 + along_of_c * sum_in_c
+        ) * quotient_in_rate_of_c_2 * rate_of_root_of_c
+        rate_of_c = (
+            -sum_in_rate_of_c
+            - (root_of_c * sum_in_c_2 - level_of_c * sum_in_c) * quotient_in_rate_of_c_2 * rate_of_across_of_c
+            - (level_of_c * sum_in_c_2 + root_of_c * sum_in_c) * quotient_in_rate_of_c_2 * rate_of_along_of_c
+        )
+        rate_of_cos_c = -rate_of_c * sin_c
+        rate_of_r21_at_c = rate_of_sin_a1 * cos_c + rate_of_cos_c * sin_a1
+        rate_of_y_at_c = rate_of_y_at_b_c + link_length_2 * rate_of_r21_at_c
+        rate_of_y_at_a4 = rate_of_y_at_c + rate_of_sin_a1 * wrist_offset_x
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_cos_b = -rate_of_b * sin_b
+        rate_of_z_at_b_c = link_length_1 * rate_of_cos_b
+        rate_of_slope_b = -(across_of_b * sin_b + along_of_b * cos_b) * rate_of_b
+        rate_of_rate_b = 2.0 * (speed_s2 - motor_s2_by_slope_b * rate_of_slope_b) / slope_b
+        rate_c = shared_sum_3 / slope_c
+        rate_of_slope_c = (
+            rate_of_cos_motor_m3 * sin_c - rate_of_sin_motor_m3 * cos_c
+        ) * crank_length_times_lever_length_times_2 - (across_of_c * sin_c + along_of_c * cos_c) * rate_of_c
+        rate_of_rate_c = (
+            rate_of_cos_motor_m3 * shared_sum_2
+            + rate_of_sin_motor_m3 * shared_sum
+            + crank_length_times_lever_length_times_2 * rate_of_c * (cos_c * cos_motor_m3 + sin_c * sin_motor_m3)
+            - rate_c * rate_of_slope_c
+        ) / slope_c
+        rate_of_x_at_b = rate_of_cos_a1 * shoulder_offset
+        rate_of_r13_at_b = rate_of_sin_b * cos_a1 + rate_of_cos_a1 * sin_b
+        rate_of_x_at_b_c = rate_of_x_at_b + link_length_1 * rate_of_r13_at_b
+        rate_of_r11_at_c = rate_of_cos_c * cos_a1 + rate_of_cos_a1 * cos_c
+        rate_of_x_at_c = rate_of_x_at_b_c + link_length_2 * rate_of_r11_at_c
+        rate_of_x_at_a4 = rate_of_x_at_c + rate_of_cos_a1 * wrist_offset_x
+        y_at_b = shoulder_offset * sin_a1
+        r23_at_b = sin_a1 * sin_b
+        y_at_b_c = y_at_b + link_length_1 * r23_at_b
+        r21_at_c = cos_c * sin_a1
+        y_at_c = y_at_b_c + link_length_2 * r21_at_c
+        y_at_a4 = y_at_c + wrist_offset_x * sin_a1
+        x_at_b = shoulder_offset * cos_a1
+        r13_at_b = cos_a1 * sin_b
+        x_at_b_c = x_at_b + link_length_1 * r13_at_b
+        r11_at_c = cos_a1 * cos_c
+        x_at_c = x_at_b_c + link_length_2 * r11_at_c
+        x_at_a4 = x_at_c + wrist_offset_x * cos_a1
+        y_at_a4_minus_y_at_b_c = y_at_a4 - y_at_b_c
+        x_at_a4_minus_x_at_b_c = x_at_a4 - x_at_b_c
+        z_at_b_c = base_height + link_length_1 * cos_b
+        z_at_c = z_at_b_c - link_length_2 * sin_c
+        z = wrist_offset_z + z_at_c
+        z_minus_z_at_b_c = z - z_at_b_c
+        shared_sum_4 = base_height + z_minus_z_at_b_c - z
+        shared_sum_5 = z_at_c + z_minus_z_at_b_c - z
+        speed_s2_times_rate_of_rate_b = rate_of_rate_b * speed_s2
+        rate_c_times_speed_m3 = rate_c * speed_m3
+        rate_b_times_speed_s2 = rate_b * speed_s2
+        shared_sum_6 = rate_b_times_speed_s2 - rate_c_times_speed_m3
+        shared_sum_6_times_cos_a1 = shared_sum_6 * cos_a1
+        shared_sum_7 = (z_at_b_c - base_height) * rate_b_times_speed_s2 + (z_at_c - z_at_b_c) * rate_c_times_speed_m3
+        shared_sum_6_times_sin_a1 = shared_sum_6 * sin_a1
+        rate_of_sin_c = rate_of_c * cos_c
+        rate_of_z_at_c = rate_of_z_at_b_c - link_length_2 * rate_of_sin_c
+        rate_c_times_rate_of_z_at_c = rate_c * rate_of_z_at_c
+        shared_sum_8 = (
+            (x_at_b_c - x_at_b) * rate_b_times_speed_s2 + (x_at_c - x_at_b_c) * rate_c_times_speed_m3
+        ) * rate_of_cos_a1 + (
+            rate_c * (rate_of_x_at_c * cos_a1 + rate_of_y_at_c * sin_a1)
+            + rate_of_rate_c
+            * (
+                (x_at_a4_minus_x_at_b_c + x_at_c - x_at_a4) * cos_a1
+                + (y_at_a4_minus_y_at_b_c + y_at_c - y_at_a4) * sin_a1
+            )
+        ) * speed_m3
+        shared_sum_9 = (
+            rate_of_x_at_b_c * shared_sum_6_times_cos_a1
+            + rate_of_y_at_b_c * shared_sum_6_times_sin_a1
+            - (rate_b_times_speed_s2 * (y_at_b - y_at_b_c) + rate_c_times_speed_m3 * (y_at_b_c - y_at_c))
+            * rate_of_sin_a1
+        )
+        return (
+            rate_of_cos_a1 * shared_sum_7
+            + rate_of_z_at_b_c * shared_sum_6_times_cos_a1
+            + speed_m3 * (rate_c_times_rate_of_z_at_c * cos_a1 + rate_of_rate_c * shared_sum_5 * cos_a1)
+            - rate_of_y_at_a4 * speed_a1
+            - shared_sum_4 * speed_s2_times_rate_of_rate_b * cos_a1,
+            rate_of_sin_a1 * shared_sum_7
+            + rate_of_x_at_a4 * speed_a1
+            + rate_of_z_at_b_c * shared_sum_6_times_sin_a1
+            + (rate_c_times_rate_of_z_at_c * sin_a1 + rate_of_rate_c * shared_sum_5 * sin_a1) * speed_m3
+            - shared_sum_4 * speed_s2_times_rate_of_rate_b * sin_a1,
+            (
+                rate_b * (rate_of_x_at_b * cos_a1 + rate_of_y_at_b * sin_a1)
+                + rate_of_rate_b
+                * (
+                    (x_at_a4_minus_x_at_b_c + x_at_b - x_at_a4) * cos_a1
+                    + (y_at_a4_minus_y_at_b_c + y_at_b - y_at_a4) * sin_a1
+                )
+            )
+            * speed_s2
+            - shared_sum_8
+            - shared_sum_9,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -75,7 +75,7 @@ class ScissorLift(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_ScissorLift"
-    KEY = "scissorlift 1cb95c04d333b424"
+    KEY = "scissorlift 182404732b6dc6f9"
     AXES = (
         Axis(name="S1", kind="linear", unit="u", meaning="Cylinder: fixed lower pin to the rollers", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Table about Z", multi_turn=True),
@@ -295,6 +295,32 @@ class ScissorLift(OffsetKinematics, TwistChoice):
             return Status.IMPOSSIBLE
         rate_h = -2.0 * motor_s1 / slope_h
         return ((0.0, 0.0), (0.0, 0.0), (rate_h, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 1.0))
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_s1, axis_a2 = axes
+        speed_s1, speed_a2 = speeds
+        k = self._constants
+        beam_length_squared, beam_length_times_free_angle = k.beam_length_squared, k.beam_length_times_free_angle
+        offset_s1, product_in_rate_h = k.offset_s1, k.product_in_rate_h
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a2, speed_s1, axis_a2, axis_s1):
+            return Status.BAD_INPUT
+        motor_s1 = axis_s1 - offset_s1
+        rest_of_h = beam_length_squared - motor_s1 * motor_s1
+        # S1: its loop does not close
+        if not (rest_of_h >= -1e-12 * abs(rest_of_h) and 2.0 * motor_s1 >= -beam_length_times_free_angle):
+            return Status.IMPOSSIBLE
+        h = sqrt(rest_of_h) if rest_of_h > 0.0 else 0.0
+        slope_h = 2.0 * h  # the loop of S1: its equation by what it moves
+        # S1: in the other assembly mode, or too close to a type 2 singularity
+        if not (abs(slope_h) > product_in_rate_h):
+            return Status.IMPOSSIBLE
+        rate_of_rest_of_h = -2.0 * motor_s1 * speed_s1
+        rate_of_h = (0.5 / (h if rest_of_h > 0.0 else 1.0) if rest_of_h > 0.0 else 0.0) * rate_of_rest_of_h
+        rate_of_slope_h = 2.0 * rate_of_h
+        rate_of_rate_h = 2.0 * (motor_s1 * rate_of_slope_h / slope_h - speed_s1) / slope_h
+        return (0.0, 0.0, rate_of_rate_h * speed_s1, 0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -69,7 +69,7 @@ class SkewGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_SkewGantry3"
-    KEY = "skewgantry3 dc9a52a48cf49295"
+    KEY = "skewgantry3 bb33166105a70fdd"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Rails along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along the beam", multi_turn=False),
@@ -223,6 +223,14 @@ class SkewGantry3(OffsetKinematics):
         if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ((1.0, cos_skew, 0.0), (0.0, sin_skew, 0.0), (0.0, 0.0, 1.0))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z = axes
+        speed_x, speed_y, speed_z = speeds
+        if not reasonable(speed_x, speed_y, speed_z, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

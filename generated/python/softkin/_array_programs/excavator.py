@@ -773,3 +773,729 @@ class ArrayPrograms(Programs):
             (0.0, cos_a1_times_rate_b, cos_a1_times_rate_c, rate_r_times_rate_d_times_cos_a1),
             (1.0, 0.0, 0.0, 0.0),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_s2, axis_s3, axis_s4 = axes
+        speed_a1, speed_s2, speed_s3, speed_s4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_s2, axis_s3, axis_s4, speed_a1, speed_s2, speed_s3, speed_s4),
+            Status.BAD_INPUT,
+        )
+        motor_s2 = axis_s2 - k.offset_s2
+        level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+        motor_s3 = axis_s3 - k.offset_s3
+        level_of_c = motor_s3 * motor_s3 - k.sum_in_level_of_c
+        motor_s4 = axis_s4 - k.offset_s4
+        level_of_r = motor_s4 * motor_s4 - k.sum_in_level_of_r
+        product_in_root_of_r = (k.reach_of_r_2 - level_of_r) * (level_of_r + k.reach_of_r_2)
+        root_of_r = root(product_in_root_of_r)
+        cos_r = (k.across_of_r_2 * root_of_r + k.along_of_r_2 * level_of_r) * k.one_by_divisor_of_r_2
+        level_of_d = -k.sum_in_level_of_d - k.product_in_level_of_d * cos_r
+        sin_r = (k.across_of_r_2 * level_of_r - k.along_of_r_2 * root_of_r) * k.one_by_divisor_of_r_2
+        # the loop of D, solved for D
+        along_of_d = (
+            k.bucket_ear_z_times_rocker_length_times_2 * sin_r
+            - k.product_in_along_of_d
+            - k.bucket_ear_x_times_rocker_length_times_2 * cos_r
+        )
+        across_of_d = (
+            -k.product_in_across_of_d
+            - k.bucket_ear_x_times_rocker_length_times_2 * sin_r
+            - k.bucket_ear_z_times_rocker_length_times_2 * cos_r
+        )
+        sum_in_reach_of_d = across_of_d * across_of_d + along_of_d * along_of_d
+        reach_of_d = root(sum_in_reach_of_d)
+        divisor_of_d = select(sum_in_reach_of_d > 1e-12, sum_in_reach_of_d, 1.0)
+        product_in_root_of_d = (level_of_d + reach_of_d) * (level_of_d - reach_of_d)
+        root_of_d = root(-product_in_root_of_d)
+        sum_in_d = across_of_d * root_of_d + along_of_d * level_of_d
+        sum_in_d_2 = across_of_d * level_of_d - along_of_d * root_of_d
+        d = atan2(sum_in_d_2 / divisor_of_d, sum_in_d / divisor_of_d)
+        cos_of_d = cos(d)
+        sin_of_d = sin(d)
+        shared_sum = (
+            k.bucket_ear_x_times_rocker_length_times_2 * sin_of_d
+            - k.bucket_ear_z_times_rocker_length_times_2 * cos_of_d
+        )
+        shared_sum_3 = (
+            k.bucket_ear_x_times_rocker_length_times_2 * cos_of_d
+            + k.bucket_ear_z_times_rocker_length_times_2 * sin_of_d
+        )
+        shared_sum_3_minus_product_in_level_of_d = shared_sum_3 - k.product_in_level_of_d
+        shared_sum_4 = shared_sum_3_minus_product_in_level_of_d * sin_r - shared_sum * cos_r
+        product_in_root_of_b = (k.reach_of_b - level_of_b) * (level_of_b + k.reach_of_b)
+        root_of_b = -root(product_in_root_of_b)
+        sum_in_b = k.across_of_b * root_of_b + k.along_of_b * level_of_b
+        sum_in_b_2 = k.across_of_b * level_of_b - k.along_of_b * root_of_b
+        b = atan2(k.one_by_divisor_of_b * sum_in_b_2, k.one_by_divisor_of_b * sum_in_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        slope_b = k.across_of_b * cos_b - k.along_of_b * sin_b  # the loop of S2: its equation by what it moves
+        product_in_root_of_c = (k.reach_of_c - level_of_c) * (level_of_c + k.reach_of_c)
+        root_of_c = root(product_in_root_of_c)
+        sum_in_c = k.across_of_c * root_of_c + k.along_of_c * level_of_c
+        sum_in_c_2 = k.across_of_c * level_of_c - k.along_of_c * root_of_c
+        c = atan2(k.one_by_divisor_of_c * sum_in_c_2, k.one_by_divisor_of_c * sum_in_c)
+        sin_of_c = sin(c)
+        cos_of_c = cos(c)
+        # the loop of S3: its equation by what it moves
+        slope_c = k.across_of_c * cos_of_c - k.along_of_c * sin_of_c
+        slope_r = k.across_of_r_2 * cos_r - k.along_of_r_2 * sin_r  # the loop of S4: its equation by what it moves
+        slope_d = across_of_d * cos_of_d - along_of_d * sin_of_d  # the loop of S4: its equation by what it moves
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        slope_r_2 = select(absolute(slope_r) > k.product_in_rate_r, slope_r, 1.0)
+        motor_s4_by_slope_r = motor_s4 / slope_r_2
+        rate_r = 2.0 * motor_s4_by_slope_r
+        slope_d_2 = select(absolute(slope_d) > k.product_in_rate_d, slope_d, 1.0)
+        rate_d = -shared_sum_4 / slope_d_2
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        sin_a1 = sin(a1)
+        rate_of_y_at_b = k.boom_foot_x * rate_of_sin_a1
+        rate_of_level_of_b = 2.0 * motor_s2 * speed_s2
+        rate_of_root_of_b = (
+            2.0
+            * select(product_in_root_of_b > 0.0, 0.5 / select(product_in_root_of_b > 0.0, -root_of_b, 1.0), 0.0)
+            * level_of_b
+            * rate_of_level_of_b
+        )
+        product_in_rate_of_b = k.one_by_divisor_of_b_squared * (sum_in_b * sum_in_b + sum_in_b_2 * sum_in_b_2)
+        product_in_rate_of_b_2 = select(product_in_rate_of_b > 0.0, product_in_rate_of_b, 1.0)
+        rate_of_b = (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b - k.along_of_b_by_divisor_of_b_squared * sum_in_b_2
+        ) * rate_of_level_of_b / product_in_rate_of_b_2 - (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b_2 + k.along_of_b_by_divisor_of_b_squared * sum_in_b
+        ) * rate_of_root_of_b / product_in_rate_of_b_2
+        rate_of_cos_b = -rate_of_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_a1 * cos_b + rate_of_cos_b * sin_a1
+        rate_of_y_at_c = rate_of_y_at_b + k.boom_length * rate_of_r21_at_b
+        b_plus_c = b + c
+        cos_b_c = cos(b_plus_c)
+        sin_b_c = sin(b_plus_c)
+        rate_of_level_of_c = 2.0 * motor_s3 * speed_s3
+        rate_of_root_of_c = (
+            -2.0
+            * select(product_in_root_of_c > 0.0, 0.5 / select(product_in_root_of_c > 0.0, root_of_c, 1.0), 0.0)
+            * level_of_c
+            * rate_of_level_of_c
+        )
+        product_in_rate_of_c = k.one_by_divisor_of_c_squared * (sum_in_c * sum_in_c + sum_in_c_2 * sum_in_c_2)
+        product_in_rate_of_c_2 = select(product_in_rate_of_c > 0.0, product_in_rate_of_c, 1.0)
+        rate_of_c = (
+            k.across_of_c_by_divisor_of_c_squared * sum_in_c - k.along_of_c_by_divisor_of_c_squared * sum_in_c_2
+        ) * rate_of_level_of_c / product_in_rate_of_c_2 - (
+            k.across_of_c_by_divisor_of_c_squared * sum_in_c_2 + k.along_of_c_by_divisor_of_c_squared * sum_in_c
+        ) * rate_of_root_of_c / product_in_rate_of_c_2
+        rate_of_b_plus_rate_of_c = rate_of_b + rate_of_c
+        rate_of_cos_b_c = -rate_of_b_plus_rate_of_c * sin_b_c
+        rate_of_r21_at_b_c = rate_of_sin_a1 * cos_b_c + rate_of_cos_b_c * sin_a1
+        rate_of_y_at_d = rate_of_y_at_c + rate_of_r21_at_b_c * k.stick_length
+        b_plus_c_plus_d = b_plus_c + d
+        cos_b_c_d = cos(b_plus_c_plus_d)
+        sin_b_c_d = sin(b_plus_c_plus_d)
+        rate_of_level_of_r = 2.0 * motor_s4 * speed_s4
+        rate_of_root_of_r = (
+            -2.0
+            * select(product_in_root_of_r > 0.0, 0.5 / select(product_in_root_of_r > 0.0, root_of_r, 1.0), 0.0)
+            * level_of_r
+            * rate_of_level_of_r
+        )
+        rate_of_cos_r = (
+            k.across_of_r_2_by_divisor_of_r_2 * rate_of_root_of_r
+            + k.along_of_r_2_by_divisor_of_r_2 * rate_of_level_of_r
+        )
+        rate_of_sin_r = (
+            k.across_of_r_2_by_divisor_of_r_2 * rate_of_level_of_r
+            - k.along_of_r_2_by_divisor_of_r_2 * rate_of_root_of_r
+        )
+        rate_of_along_of_d = (
+            k.bucket_ear_z_times_rocker_length_times_2 * rate_of_sin_r
+            - k.bucket_ear_x_times_rocker_length_times_2 * rate_of_cos_r
+        )
+        rate_of_across_of_d = (
+            -k.bucket_ear_x_times_rocker_length_times_2 * rate_of_sin_r
+            - k.bucket_ear_z_times_rocker_length_times_2 * rate_of_cos_r
+        )
+        sum_in_reach_of_d_squared = divisor_of_d * divisor_of_d
+        quotient_in_rate_of_d = (sum_in_d * sum_in_d + sum_in_d_2 * sum_in_d_2) / sum_in_reach_of_d_squared
+        quotient_in_rate_of_d_2 = 1.0 / (
+            select(quotient_in_rate_of_d > 0.0, quotient_in_rate_of_d, 1.0) * sum_in_reach_of_d_squared
+        )
+        rate_of_level_of_d = -k.product_in_level_of_d * rate_of_cos_r
+        rate_of_reach_of_d = (
+            2.0
+            * select(sum_in_reach_of_d > 0.0, 0.5 / select(sum_in_reach_of_d > 0.0, reach_of_d, 1.0), 0.0)
+            * (across_of_d * rate_of_across_of_d + along_of_d * rate_of_along_of_d)
+        )
+        rate_of_root_of_d = (
+            2.0
+            * (rate_of_reach_of_d * reach_of_d - level_of_d * rate_of_level_of_d)
+            * select(-product_in_root_of_d > 0.0, 0.5 / select(-product_in_root_of_d > 0.0, root_of_d, 1.0), 0.0)
+        )
+        sum_in_rate_of_d = (
+            along_of_d * sum_in_d_2 - across_of_d * sum_in_d
+        ) * quotient_in_rate_of_d_2 * rate_of_level_of_d + (
+            across_of_d * sum_in_d_2 + along_of_d * sum_in_d
+        ) * quotient_in_rate_of_d_2 * rate_of_root_of_d
+        rate_of_d = (
+            -sum_in_rate_of_d
+            - (root_of_d * sum_in_d_2 - level_of_d * sum_in_d) * quotient_in_rate_of_d_2 * rate_of_across_of_d
+            - (level_of_d * sum_in_d_2 + root_of_d * sum_in_d) * quotient_in_rate_of_d_2 * rate_of_along_of_d
+        )
+        rate_of_b_plus_rate_of_c_plus_rate_of_d = rate_of_b_plus_rate_of_c + rate_of_d
+        rate_of_cos_b_c_d = -rate_of_b_plus_rate_of_c_plus_rate_of_d * sin_b_c_d
+        rate_of_r21_at_b_c_d = rate_of_sin_a1 * cos_b_c_d + rate_of_cos_b_c_d * sin_a1
+        rate_of_y = rate_of_y_at_d + k.bucket_length * rate_of_r21_at_b_c_d
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_sin_b = rate_of_b * cos_b
+        rate_of_z_at_c = -k.boom_length * rate_of_sin_b
+        rate_of_sin_b_c = rate_of_b_plus_rate_of_c * cos_b_c
+        rate_of_z_at_d = rate_of_z_at_c - rate_of_sin_b_c * k.stick_length
+        rate_of_sin_b_c_d = rate_of_b_plus_rate_of_c_plus_rate_of_d * cos_b_c_d
+        rate_of_z = rate_of_z_at_d - k.bucket_length * rate_of_sin_b_c_d
+        rate_of_slope_c = -(k.across_of_c * sin_of_c + k.along_of_c * cos_of_c) * rate_of_c
+        slope_c_2 = select(absolute(slope_c) > k.product_in_rate_c, slope_c, 1.0)
+        motor_s3_by_slope_c = motor_s3 / slope_c_2
+        rate_of_rate_c = (
+            2.0
+            * (
+                speed_s3
+                - select(absolute(slope_c) > k.product_in_rate_c, 1.0, 0.0) * motor_s3_by_slope_c * rate_of_slope_c
+            )
+            / slope_c_2
+        )
+        rate_of_cos_r_times_shared_sum = rate_of_cos_r * shared_sum
+        rate_of_slope_d = (
+            rate_of_cos_r_times_shared_sum
+            - (across_of_d * sin_of_d + along_of_d * cos_of_d) * rate_of_d
+            - rate_of_sin_r * shared_sum_3
+        )
+        rate_of_rate_d = (
+            rate_of_cos_r_times_shared_sum
+            + rate_of_d * (shared_sum_3 * cos_r + shared_sum * sin_r)
+            - rate_of_sin_r * shared_sum_3_minus_product_in_level_of_d
+            - select(absolute(slope_d) > k.product_in_rate_d, 1.0, 0.0) * rate_d * rate_of_slope_d
+        ) / slope_d_2
+        rate_of_x_at_b = k.boom_foot_x * rate_of_cos_a1
+        rate_of_r11_at_b = rate_of_cos_b * cos_a1 + rate_of_cos_a1 * cos_b
+        rate_of_x_at_c = rate_of_x_at_b + k.boom_length * rate_of_r11_at_b
+        rate_of_r11_at_b_c = rate_of_cos_b_c * cos_a1 + rate_of_cos_a1 * cos_b_c
+        rate_of_x_at_d = rate_of_x_at_c + rate_of_r11_at_b_c * k.stick_length
+        rate_of_r11_at_b_c_d = rate_of_cos_b_c_d * cos_a1 + rate_of_cos_a1 * cos_b_c_d
+        rate_of_x = rate_of_x_at_d + k.bucket_length * rate_of_r11_at_b_c_d
+        y_at_b = k.boom_foot_x * sin_a1
+        r21_at_b = cos_b * sin_a1
+        y_at_c = y_at_b + k.boom_length * r21_at_b
+        r21_at_b_c = cos_b_c * sin_a1
+        y_at_d = y_at_c + r21_at_b_c * k.stick_length
+        r21_at_b_c_d = cos_b_c_d * sin_a1
+        y = y_at_d + k.bucket_length * r21_at_b_c_d
+        y_minus_y_at_d = y - y_at_d
+        x_at_b = k.boom_foot_x * cos_a1
+        r11_at_b = cos_a1 * cos_b
+        x_at_c = x_at_b + k.boom_length * r11_at_b
+        r11_at_b_c = cos_a1 * cos_b_c
+        x_at_d = x_at_c + r11_at_b_c * k.stick_length
+        r11_at_b_c_d = cos_a1 * cos_b_c_d
+        x = x_at_d + k.bucket_length * r11_at_b_c_d
+        x_minus_x_at_d = x - x_at_d
+        shared_sum_2 = x_minus_x_at_d * cos_a1 + y_minus_y_at_d * sin_a1
+        shared_product_9 = rate_d * rate_r * speed_s4
+        rate_c = 2.0 * motor_s3_by_slope_c
+        rate_c_times_speed_s3 = rate_c * speed_s3
+        slope_b_2 = select(absolute(slope_b) > k.product_in_rate_b, slope_b, 1.0)
+        motor_s2_by_slope_b = motor_s2 / slope_b_2
+        rate_b = 2.0 * motor_s2_by_slope_b
+        rate_b_times_speed_s2 = rate_b * speed_s2
+        shared_sum_5 = rate_b_times_speed_s2 + rate_c_times_speed_s3 + shared_product_9
+        shared_sum_5_times_cos_a1 = shared_sum_5 * cos_a1
+        z_at_c = k.boom_foot_z - k.boom_length * sin_b
+        z_at_d = z_at_c - k.stick_length * sin_b_c
+        z = z_at_d - k.bucket_length * sin_b_c_d
+        z_minus_boom_foot_z = z - k.boom_foot_z
+        z_minus_z_at_c = z - z_at_c
+        z_minus_z_at_d = z - z_at_d
+        shared_sum_6 = (
+            rate_b_times_speed_s2 * z_minus_boom_foot_z
+            + rate_c_times_speed_s3 * z_minus_z_at_c
+            + shared_product_9 * z_minus_z_at_d
+        )
+        rate_of_slope_b = -(k.across_of_b * sin_b + k.along_of_b * cos_b) * rate_of_b
+        rate_of_rate_b = (
+            2.0
+            * (
+                speed_s2
+                - select(absolute(slope_b) > k.product_in_rate_b, 1.0, 0.0) * motor_s2_by_slope_b * rate_of_slope_b
+            )
+            / slope_b_2
+        )
+        rate_of_rate_b_times_speed_s2 = rate_of_rate_b * speed_s2
+        rate_of_slope_r = k.across_of_r_2 * rate_of_cos_r - k.along_of_r_2 * rate_of_sin_r
+        rate_of_rate_r = (
+            2.0
+            * (
+                speed_s4
+                - select(absolute(slope_r) > k.product_in_rate_r, 1.0, 0.0) * motor_s4_by_slope_r * rate_of_slope_r
+            )
+            / slope_r_2
+        )
+        rate_d_times_rate_of_rate_r = rate_d * rate_of_rate_r
+        shared_sum_5_times_sin_a1 = shared_sum_5 * sin_a1
+        shared_sum_7 = (
+            rate_of_rate_b_times_speed_s2 * z_minus_boom_foot_z
+            + (rate_of_rate_c * z_minus_z_at_c - rate_c * rate_of_z_at_c) * speed_s3
+            + (
+                rate_d_times_rate_of_rate_r * z_minus_z_at_d
+                + (rate_of_rate_d * z_minus_z_at_d - rate_d * rate_of_z_at_d) * rate_r
+            )
+            * speed_s4
+        )
+        y_minus_y_at_b = y - y_at_b
+        x_minus_x_at_b = x - x_at_b
+        y_minus_y_at_c = y - y_at_c
+        x_minus_x_at_c = x - x_at_c
+        shared_sum_8 = (
+            rate_b * (rate_of_x_at_b * cos_a1 + rate_of_y_at_b * sin_a1)
+            - rate_of_rate_b * (x_minus_x_at_b * cos_a1 + y_minus_y_at_b * sin_a1)
+        ) * speed_s2 + (
+            rate_c * (rate_of_x_at_c * cos_a1 + rate_of_y_at_c * sin_a1)
+            - rate_of_rate_c * (x_minus_x_at_c * cos_a1 + y_minus_y_at_c * sin_a1)
+        ) * speed_s3
+        shared_sum_9 = (
+            rate_b_times_speed_s2 * x_minus_x_at_b
+            + rate_c_times_speed_s3 * x_minus_x_at_c
+            + shared_product_9 * x_minus_x_at_d
+        ) * rate_of_cos_a1 + (
+            rate_b_times_speed_s2 * y_minus_y_at_b
+            + rate_c_times_speed_s3 * y_minus_y_at_c
+            + shared_product_9 * y_minus_y_at_d
+        ) * rate_of_sin_a1
+        # S2: its loop does not close
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        # S3: its loop does not close
+        # S3: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_c) <= k.shared_product_2) & (2.0 * motor_s3 >= -k.machine_scale_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        # S4: its loop does not close
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_r) <= k.shared_product_3)
+            & (absolute(level_of_d) <= 1.000000000001 * reach_of_d)
+            & (2.0 * motor_s4 >= -k.machine_scale_times_rounding)
+            & (-shared_sum_4 >= -k.shared_product_4),
+            Status.IMPOSSIBLE,
+        )
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_b) > k.product_in_rate_b, Status.IMPOSSIBLE)
+        # S3: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_c) > k.product_in_rate_c, Status.IMPOSSIBLE)
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(slope_d) > k.product_in_rate_d) & (absolute(slope_r) > k.product_in_rate_r),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            shared_sum_7 * cos_a1
+            + rate_of_cos_a1 * shared_sum_6
+            + rate_of_z * shared_sum_5_times_cos_a1
+            - rate_of_y * speed_a1,
+            rate_of_sin_a1 * shared_sum_6
+            + rate_of_x * speed_a1
+            + rate_of_z * shared_sum_5_times_sin_a1
+            + shared_sum_7 * sin_a1,
+            shared_sum_8
+            + (
+                (rate_d * (rate_of_x_at_d * cos_a1 + rate_of_y_at_d * sin_a1) - rate_of_rate_d * shared_sum_2) * rate_r
+                - rate_d_times_rate_of_rate_r * shared_sum_2
+            )
+            * speed_s4
+            - shared_sum_9
+            - rate_of_x * shared_sum_5_times_cos_a1
+            - rate_of_y * shared_sum_5_times_sin_a1,
+            2.0 * rate_of_cos_a1 * shared_sum_5_times_cos_a1
+            + 2.0 * rate_of_sin_a1 * shared_sum_5_times_sin_a1
+            + (
+                rate_of_rate_b_times_speed_s2
+                + rate_of_rate_c * speed_s3
+                + (rate_d_times_rate_of_rate_r + rate_of_rate_d * rate_r) * speed_s4
+            )
+            * (cos_a1 * cos_a1 + sin_a1 * sin_a1),
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_s2, axis_s3, axis_s4 = axes
+        speed_a1, speed_s2, speed_s3, speed_s4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_s2, axis_s3, axis_s4, speed_a1, speed_s2, speed_s3, speed_s4),
+            Status.BAD_INPUT,
+        )
+        motor_s2 = axis_s2 - k.offset_s2
+        level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+        motor_s3 = axis_s3 - k.offset_s3
+        level_of_c = motor_s3 * motor_s3 - k.sum_in_level_of_c
+        motor_s4 = axis_s4 - k.offset_s4
+        level_of_r = motor_s4 * motor_s4 - k.sum_in_level_of_r
+        product_in_root_of_r = (k.reach_of_r_2 - level_of_r) * (level_of_r + k.reach_of_r_2)
+        root_of_r = root(product_in_root_of_r)
+        cos_r = (k.across_of_r_2 * root_of_r + k.along_of_r_2 * level_of_r) * k.one_by_divisor_of_r_2
+        level_of_d = -k.sum_in_level_of_d - k.product_in_level_of_d * cos_r
+        sin_r = (k.across_of_r_2 * level_of_r - k.along_of_r_2 * root_of_r) * k.one_by_divisor_of_r_2
+        # the loop of D, solved for D
+        along_of_d = (
+            k.bucket_ear_z_times_rocker_length_times_2 * sin_r
+            - k.product_in_along_of_d
+            - k.bucket_ear_x_times_rocker_length_times_2 * cos_r
+        )
+        across_of_d = (
+            -k.product_in_across_of_d
+            - k.bucket_ear_x_times_rocker_length_times_2 * sin_r
+            - k.bucket_ear_z_times_rocker_length_times_2 * cos_r
+        )
+        sum_in_reach_of_d = across_of_d * across_of_d + along_of_d * along_of_d
+        reach_of_d = root(sum_in_reach_of_d)
+        divisor_of_d = select(sum_in_reach_of_d > 1e-12, sum_in_reach_of_d, 1.0)
+        product_in_root_of_d = (level_of_d + reach_of_d) * (level_of_d - reach_of_d)
+        root_of_d = root(-product_in_root_of_d)
+        sum_in_d = across_of_d * root_of_d + along_of_d * level_of_d
+        sum_in_d_2 = across_of_d * level_of_d - along_of_d * root_of_d
+        d = atan2(sum_in_d_2 / divisor_of_d, sum_in_d / divisor_of_d)
+        cos_of_d = cos(d)
+        sin_of_d = sin(d)
+        shared_sum = (
+            k.bucket_ear_x_times_rocker_length_times_2 * sin_of_d
+            - k.bucket_ear_z_times_rocker_length_times_2 * cos_of_d
+        )
+        shared_sum_3 = (
+            k.bucket_ear_x_times_rocker_length_times_2 * cos_of_d
+            + k.bucket_ear_z_times_rocker_length_times_2 * sin_of_d
+        )
+        shared_sum_3_minus_product_in_level_of_d = shared_sum_3 - k.product_in_level_of_d
+        shared_sum_4 = shared_sum_3_minus_product_in_level_of_d * sin_r - shared_sum * cos_r
+        product_in_root_of_b = (k.reach_of_b - level_of_b) * (level_of_b + k.reach_of_b)
+        root_of_b = -root(product_in_root_of_b)
+        sum_in_b = k.across_of_b * root_of_b + k.along_of_b * level_of_b
+        sum_in_b_2 = k.across_of_b * level_of_b - k.along_of_b * root_of_b
+        b = atan2(k.one_by_divisor_of_b * sum_in_b_2, k.one_by_divisor_of_b * sum_in_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        slope_b = k.across_of_b * cos_b - k.along_of_b * sin_b  # the loop of S2: its equation by what it moves
+        product_in_root_of_c = (k.reach_of_c - level_of_c) * (level_of_c + k.reach_of_c)
+        root_of_c = root(product_in_root_of_c)
+        sum_in_c = k.across_of_c * root_of_c + k.along_of_c * level_of_c
+        sum_in_c_2 = k.across_of_c * level_of_c - k.along_of_c * root_of_c
+        c = atan2(k.one_by_divisor_of_c * sum_in_c_2, k.one_by_divisor_of_c * sum_in_c)
+        sin_of_c = sin(c)
+        cos_of_c = cos(c)
+        # the loop of S3: its equation by what it moves
+        slope_c = k.across_of_c * cos_of_c - k.along_of_c * sin_of_c
+        slope_r = k.across_of_r_2 * cos_r - k.along_of_r_2 * sin_r  # the loop of S4: its equation by what it moves
+        slope_d = across_of_d * cos_of_d - along_of_d * sin_of_d  # the loop of S4: its equation by what it moves
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        slope_r_2 = select(absolute(slope_r) > k.product_in_rate_r, slope_r, 1.0)
+        motor_s4_by_slope_r = motor_s4 / slope_r_2
+        rate_r = 2.0 * motor_s4_by_slope_r
+        slope_d_2 = select(absolute(slope_d) > k.product_in_rate_d, slope_d, 1.0)
+        rate_d = -shared_sum_4 / slope_d_2
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        sin_a1 = sin(a1)
+        rate_of_y_at_b = k.boom_foot_x * rate_of_sin_a1
+        rate_of_level_of_b = 2.0 * motor_s2 * speed_s2
+        rate_of_root_of_b = (
+            2.0
+            * select(product_in_root_of_b > 0.0, 0.5 / select(product_in_root_of_b > 0.0, -root_of_b, 1.0), 0.0)
+            * level_of_b
+            * rate_of_level_of_b
+        )
+        product_in_rate_of_b = k.one_by_divisor_of_b_squared * (sum_in_b * sum_in_b + sum_in_b_2 * sum_in_b_2)
+        product_in_rate_of_b_2 = select(product_in_rate_of_b > 0.0, product_in_rate_of_b, 1.0)
+        rate_of_b = (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b - k.along_of_b_by_divisor_of_b_squared * sum_in_b_2
+        ) * rate_of_level_of_b / product_in_rate_of_b_2 - (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b_2 + k.along_of_b_by_divisor_of_b_squared * sum_in_b
+        ) * rate_of_root_of_b / product_in_rate_of_b_2
+        rate_of_cos_b = -rate_of_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_a1 * cos_b + rate_of_cos_b * sin_a1
+        rate_of_y_at_c = rate_of_y_at_b + k.boom_length * rate_of_r21_at_b
+        b_plus_c = b + c
+        cos_b_c = cos(b_plus_c)
+        sin_b_c = sin(b_plus_c)
+        rate_of_level_of_c = 2.0 * motor_s3 * speed_s3
+        rate_of_root_of_c = (
+            -2.0
+            * select(product_in_root_of_c > 0.0, 0.5 / select(product_in_root_of_c > 0.0, root_of_c, 1.0), 0.0)
+            * level_of_c
+            * rate_of_level_of_c
+        )
+        product_in_rate_of_c = k.one_by_divisor_of_c_squared * (sum_in_c * sum_in_c + sum_in_c_2 * sum_in_c_2)
+        product_in_rate_of_c_2 = select(product_in_rate_of_c > 0.0, product_in_rate_of_c, 1.0)
+        rate_of_c = (
+            k.across_of_c_by_divisor_of_c_squared * sum_in_c - k.along_of_c_by_divisor_of_c_squared * sum_in_c_2
+        ) * rate_of_level_of_c / product_in_rate_of_c_2 - (
+            k.across_of_c_by_divisor_of_c_squared * sum_in_c_2 + k.along_of_c_by_divisor_of_c_squared * sum_in_c
+        ) * rate_of_root_of_c / product_in_rate_of_c_2
+        rate_of_b_plus_rate_of_c = rate_of_b + rate_of_c
+        rate_of_cos_b_c = -rate_of_b_plus_rate_of_c * sin_b_c
+        rate_of_r21_at_b_c = rate_of_sin_a1 * cos_b_c + rate_of_cos_b_c * sin_a1
+        rate_of_y_at_d = rate_of_y_at_c + rate_of_r21_at_b_c * k.stick_length
+        b_plus_c_plus_d = b_plus_c + d
+        cos_b_c_d = cos(b_plus_c_plus_d)
+        sin_b_c_d = sin(b_plus_c_plus_d)
+        rate_of_level_of_r = 2.0 * motor_s4 * speed_s4
+        rate_of_root_of_r = (
+            -2.0
+            * select(product_in_root_of_r > 0.0, 0.5 / select(product_in_root_of_r > 0.0, root_of_r, 1.0), 0.0)
+            * level_of_r
+            * rate_of_level_of_r
+        )
+        rate_of_cos_r = (
+            k.across_of_r_2_by_divisor_of_r_2 * rate_of_root_of_r
+            + k.along_of_r_2_by_divisor_of_r_2 * rate_of_level_of_r
+        )
+        rate_of_sin_r = (
+            k.across_of_r_2_by_divisor_of_r_2 * rate_of_level_of_r
+            - k.along_of_r_2_by_divisor_of_r_2 * rate_of_root_of_r
+        )
+        rate_of_along_of_d = (
+            k.bucket_ear_z_times_rocker_length_times_2 * rate_of_sin_r
+            - k.bucket_ear_x_times_rocker_length_times_2 * rate_of_cos_r
+        )
+        rate_of_across_of_d = (
+            -k.bucket_ear_x_times_rocker_length_times_2 * rate_of_sin_r
+            - k.bucket_ear_z_times_rocker_length_times_2 * rate_of_cos_r
+        )
+        sum_in_reach_of_d_squared = divisor_of_d * divisor_of_d
+        quotient_in_rate_of_d = (sum_in_d * sum_in_d + sum_in_d_2 * sum_in_d_2) / sum_in_reach_of_d_squared
+        quotient_in_rate_of_d_2 = 1.0 / (
+            select(quotient_in_rate_of_d > 0.0, quotient_in_rate_of_d, 1.0) * sum_in_reach_of_d_squared
+        )
+        rate_of_level_of_d = -k.product_in_level_of_d * rate_of_cos_r
+        rate_of_reach_of_d = (
+            2.0
+            * select(sum_in_reach_of_d > 0.0, 0.5 / select(sum_in_reach_of_d > 0.0, reach_of_d, 1.0), 0.0)
+            * (across_of_d * rate_of_across_of_d + along_of_d * rate_of_along_of_d)
+        )
+        rate_of_root_of_d = (
+            2.0
+            * (rate_of_reach_of_d * reach_of_d - level_of_d * rate_of_level_of_d)
+            * select(-product_in_root_of_d > 0.0, 0.5 / select(-product_in_root_of_d > 0.0, root_of_d, 1.0), 0.0)
+        )
+        sum_in_rate_of_d = (
+            along_of_d * sum_in_d_2 - across_of_d * sum_in_d
+        ) * quotient_in_rate_of_d_2 * rate_of_level_of_d + (
+            across_of_d * sum_in_d_2 + along_of_d * sum_in_d
+        ) * quotient_in_rate_of_d_2 * rate_of_root_of_d
+        rate_of_d = (
+            -sum_in_rate_of_d
+            - (root_of_d * sum_in_d_2 - level_of_d * sum_in_d) * quotient_in_rate_of_d_2 * rate_of_across_of_d
+            - (level_of_d * sum_in_d_2 + root_of_d * sum_in_d) * quotient_in_rate_of_d_2 * rate_of_along_of_d
+        )
+        rate_of_b_plus_rate_of_c_plus_rate_of_d = rate_of_b_plus_rate_of_c + rate_of_d
+        rate_of_cos_b_c_d = -rate_of_b_plus_rate_of_c_plus_rate_of_d * sin_b_c_d
+        rate_of_r21_at_b_c_d = rate_of_sin_a1 * cos_b_c_d + rate_of_cos_b_c_d * sin_a1
+        rate_of_y = rate_of_y_at_d + k.bucket_length * rate_of_r21_at_b_c_d
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_sin_b = rate_of_b * cos_b
+        rate_of_z_at_c = -k.boom_length * rate_of_sin_b
+        rate_of_sin_b_c = rate_of_b_plus_rate_of_c * cos_b_c
+        rate_of_z_at_d = rate_of_z_at_c - rate_of_sin_b_c * k.stick_length
+        rate_of_sin_b_c_d = rate_of_b_plus_rate_of_c_plus_rate_of_d * cos_b_c_d
+        rate_of_z = rate_of_z_at_d - k.bucket_length * rate_of_sin_b_c_d
+        rate_of_cos_r_times_shared_sum = rate_of_cos_r * shared_sum
+        rate_of_slope_d = (
+            rate_of_cos_r_times_shared_sum
+            - (across_of_d * sin_of_d + along_of_d * cos_of_d) * rate_of_d
+            - rate_of_sin_r * shared_sum_3
+        )
+        rate_of_rate_d = (
+            rate_of_cos_r_times_shared_sum
+            + rate_of_d * (shared_sum_3 * cos_r + shared_sum * sin_r)
+            - rate_of_sin_r * shared_sum_3_minus_product_in_level_of_d
+            - select(absolute(slope_d) > k.product_in_rate_d, 1.0, 0.0) * rate_d * rate_of_slope_d
+        ) / slope_d_2
+        rate_of_x_at_b = k.boom_foot_x * rate_of_cos_a1
+        rate_of_r11_at_b = rate_of_cos_b * cos_a1 + rate_of_cos_a1 * cos_b
+        rate_of_x_at_c = rate_of_x_at_b + k.boom_length * rate_of_r11_at_b
+        rate_of_r11_at_b_c = rate_of_cos_b_c * cos_a1 + rate_of_cos_a1 * cos_b_c
+        rate_of_x_at_d = rate_of_x_at_c + rate_of_r11_at_b_c * k.stick_length
+        rate_of_r11_at_b_c_d = rate_of_cos_b_c_d * cos_a1 + rate_of_cos_a1 * cos_b_c_d
+        rate_of_x = rate_of_x_at_d + k.bucket_length * rate_of_r11_at_b_c_d
+        y_at_b = k.boom_foot_x * sin_a1
+        r21_at_b = cos_b * sin_a1
+        y_at_c = y_at_b + k.boom_length * r21_at_b
+        r21_at_b_c = cos_b_c * sin_a1
+        y_at_d = y_at_c + r21_at_b_c * k.stick_length
+        r21_at_b_c_d = cos_b_c_d * sin_a1
+        y = y_at_d + k.bucket_length * r21_at_b_c_d
+        y_minus_y_at_d = y - y_at_d
+        x_at_b = k.boom_foot_x * cos_a1
+        r11_at_b = cos_a1 * cos_b
+        x_at_c = x_at_b + k.boom_length * r11_at_b
+        r11_at_b_c = cos_a1 * cos_b_c
+        x_at_d = x_at_c + r11_at_b_c * k.stick_length
+        r11_at_b_c_d = cos_a1 * cos_b_c_d
+        x = x_at_d + k.bucket_length * r11_at_b_c_d
+        x_minus_x_at_d = x - x_at_d
+        shared_sum_2 = x_minus_x_at_d * cos_a1 + y_minus_y_at_d * sin_a1
+        shared_product_9 = rate_d * rate_r * speed_s4
+        slope_c_2 = select(absolute(slope_c) > k.product_in_rate_c, slope_c, 1.0)
+        motor_s3_by_slope_c = motor_s3 / slope_c_2
+        rate_c = 2.0 * motor_s3_by_slope_c
+        rate_c_times_speed_s3 = rate_c * speed_s3
+        slope_b_2 = select(absolute(slope_b) > k.product_in_rate_b, slope_b, 1.0)
+        motor_s2_by_slope_b = motor_s2 / slope_b_2
+        rate_b = 2.0 * motor_s2_by_slope_b
+        rate_b_times_speed_s2 = rate_b * speed_s2
+        shared_sum_5 = rate_b_times_speed_s2 + rate_c_times_speed_s3 + shared_product_9
+        shared_sum_5_times_cos_a1 = shared_sum_5 * cos_a1
+        z_at_c = k.boom_foot_z - k.boom_length * sin_b
+        z_at_d = z_at_c - k.stick_length * sin_b_c
+        z = z_at_d - k.bucket_length * sin_b_c_d
+        z_minus_boom_foot_z = z - k.boom_foot_z
+        z_minus_z_at_c = z - z_at_c
+        z_minus_z_at_d = z - z_at_d
+        shared_sum_6 = (
+            rate_b_times_speed_s2 * z_minus_boom_foot_z
+            + rate_c_times_speed_s3 * z_minus_z_at_c
+            + shared_product_9 * z_minus_z_at_d
+        )
+        rate_of_slope_r = k.across_of_r_2 * rate_of_cos_r - k.along_of_r_2 * rate_of_sin_r
+        rate_of_rate_r = (
+            2.0
+            * (
+                speed_s4
+                - select(absolute(slope_r) > k.product_in_rate_r, 1.0, 0.0) * motor_s4_by_slope_r * rate_of_slope_r
+            )
+            / slope_r_2
+        )
+        rate_d_times_rate_of_rate_r = rate_d * rate_of_rate_r
+        shared_sum_5_times_sin_a1 = shared_sum_5 * sin_a1
+        rate_of_slope_c = -(k.across_of_c * sin_of_c + k.along_of_c * cos_of_c) * rate_of_c
+        rate_of_rate_c = (
+            2.0
+            * (
+                speed_s3
+                - select(absolute(slope_c) > k.product_in_rate_c, 1.0, 0.0) * motor_s3_by_slope_c * rate_of_slope_c
+            )
+            / slope_c_2
+        )
+        rate_of_slope_b = -(k.across_of_b * sin_b + k.along_of_b * cos_b) * rate_of_b
+        rate_of_rate_b = (
+            2.0
+            * (
+                speed_s2
+                - select(absolute(slope_b) > k.product_in_rate_b, 1.0, 0.0) * motor_s2_by_slope_b * rate_of_slope_b
+            )
+            / slope_b_2
+        )
+        rate_of_rate_b_times_speed_s2 = rate_of_rate_b * speed_s2
+        shared_sum_7 = (
+            rate_of_rate_b_times_speed_s2 * z_minus_boom_foot_z
+            + (rate_of_rate_c * z_minus_z_at_c - rate_c * rate_of_z_at_c) * speed_s3
+            + (
+                rate_d_times_rate_of_rate_r * z_minus_z_at_d
+                + (rate_of_rate_d * z_minus_z_at_d - rate_d * rate_of_z_at_d) * rate_r
+            )
+            * speed_s4
+        )
+        y_minus_y_at_b = y - y_at_b
+        x_minus_x_at_b = x - x_at_b
+        y_minus_y_at_c = y - y_at_c
+        x_minus_x_at_c = x - x_at_c
+        shared_sum_9 = (
+            rate_b * (rate_of_x_at_b * cos_a1 + rate_of_y_at_b * sin_a1)
+            - rate_of_rate_b * (x_minus_x_at_b * cos_a1 + y_minus_y_at_b * sin_a1)
+        ) * speed_s2 + (
+            rate_c * (rate_of_x_at_c * cos_a1 + rate_of_y_at_c * sin_a1)
+            - rate_of_rate_c * (x_minus_x_at_c * cos_a1 + y_minus_y_at_c * sin_a1)
+        ) * speed_s3
+        shared_sum_10 = (
+            rate_b_times_speed_s2 * x_minus_x_at_b
+            + rate_c_times_speed_s3 * x_minus_x_at_c
+            + shared_product_9 * x_minus_x_at_d
+        ) * rate_of_cos_a1 + (
+            rate_b_times_speed_s2 * y_minus_y_at_b
+            + rate_c_times_speed_s3 * y_minus_y_at_c
+            + shared_product_9 * y_minus_y_at_d
+        ) * rate_of_sin_a1
+        shared_sum_8 = (
+            rate_of_rate_b_times_speed_s2
+            + rate_of_rate_c * speed_s3
+            + (rate_d_times_rate_of_rate_r + rate_of_rate_d * rate_r) * speed_s4
+        )
+        # S2: its loop does not close
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_b) <= k.shared_product) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        # S3: its loop does not close
+        # S3: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_c) <= k.shared_product_2) & (2.0 * motor_s3 >= -k.machine_scale_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        # S4: its loop does not close
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_r) <= k.shared_product_3)
+            & (absolute(level_of_d) <= 1.000000000001 * reach_of_d)
+            & (2.0 * motor_s4 >= -k.machine_scale_times_rounding)
+            & (-shared_sum_4 >= -k.shared_product_4),
+            Status.IMPOSSIBLE,
+        )
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_b) > k.product_in_rate_b, Status.IMPOSSIBLE)
+        # S3: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_c) > k.product_in_rate_c, Status.IMPOSSIBLE)
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(slope_d) > k.product_in_rate_d) & (absolute(slope_r) > k.product_in_rate_r),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            shared_sum_7 * cos_a1
+            + rate_of_cos_a1 * shared_sum_6
+            + rate_of_z * shared_sum_5_times_cos_a1
+            - rate_of_y * speed_a1,
+            rate_of_sin_a1 * shared_sum_6
+            + rate_of_x * speed_a1
+            + rate_of_z * shared_sum_5_times_sin_a1
+            + shared_sum_7 * sin_a1,
+            shared_sum_9
+            + (
+                (rate_d * (rate_of_x_at_d * cos_a1 + rate_of_y_at_d * sin_a1) - rate_of_rate_d * shared_sum_2) * rate_r
+                - rate_d_times_rate_of_rate_r * shared_sum_2
+            )
+            * speed_s4
+            - shared_sum_10
+            - rate_of_x * shared_sum_5_times_cos_a1
+            - rate_of_y * shared_sum_5_times_sin_a1,
+            -rate_of_sin_a1 * shared_sum_5 - shared_sum_8 * sin_a1,
+            shared_sum_8 * cos_a1 + rate_of_cos_a1 * shared_sum_5,
+            0.0,
+        ), status

@@ -873,6 +873,239 @@ class ArrayPrograms(Programs):
             (1.0, 0.0, 0.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_s2, axis_m3, axis_a4 = axes
+        speed_a1, speed_s2, speed_m3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a4, axis_m3, axis_s2, speed_a1, speed_a4, speed_m3, speed_s2),
+            Status.BAD_INPUT,
+        )
+        motor_s2 = axis_s2 - k.offset_s2
+        level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
+        motor_m3 = DEGREE * (axis_m3 - k.offset_m3)
+        cos_motor_m3 = cos(motor_m3)
+        sin_motor_m3 = sin(motor_m3)
+        level_of_c = (
+            k.sum_in_level_of_c
+            + k.crank_base_z_times_crank_length_times_2 * sin_motor_m3
+            - k.crank_base_x_times_crank_length_times_2 * cos_motor_m3
+        )
+        # the loop of C, solved for C
+        along_of_c = (
+            -k.crank_base_x_times_lever_length_times_2 - k.crank_length_times_lever_length_times_2 * cos_motor_m3
+        )
+        across_of_c = (
+            k.crank_base_z_times_lever_length_times_2 - k.crank_length_times_lever_length_times_2 * sin_motor_m3
+        )
+        sum_in_reach_of_c = across_of_c * across_of_c + along_of_c * along_of_c
+        reach_of_c = root(sum_in_reach_of_c)
+        divisor_of_c = select(sum_in_reach_of_c > 1e-12, sum_in_reach_of_c, 1.0)
+        product_in_root_of_c = (level_of_c + reach_of_c) * (level_of_c - reach_of_c)
+        root_of_c = -root(-product_in_root_of_c)
+        sum_in_c = across_of_c * root_of_c + along_of_c * level_of_c
+        sum_in_c_2 = across_of_c * level_of_c - along_of_c * root_of_c
+        c = atan2(sum_in_c_2 / divisor_of_c, sum_in_c / divisor_of_c)
+        cos_c = cos(c)
+        shared_sum = k.crank_base_x_times_crank_length_times_2 - k.crank_length_times_lever_length_times_2 * cos_c
+        sin_c = sin(c)
+        shared_sum_2 = k.crank_base_z_times_crank_length_times_2 + k.crank_length_times_lever_length_times_2 * sin_c
+        shared_sum_3 = shared_sum_2 * cos_motor_m3 + shared_sum * sin_motor_m3
+        product_in_root_of_b = (k.reach_of_b - level_of_b) * (level_of_b + k.reach_of_b)
+        root_of_b = root(product_in_root_of_b)
+        sum_in_b = k.across_of_b * root_of_b + k.along_of_b * level_of_b
+        sum_in_b_2 = k.across_of_b * level_of_b - k.along_of_b * root_of_b
+        b = atan2(k.one_by_divisor_of_b * sum_in_b_2, k.one_by_divisor_of_b * sum_in_b)
+        cos_b = cos(b)
+        sin_b = sin(b)
+        slope_b = k.across_of_b * cos_b - k.along_of_b * sin_b  # the loop of S2: its equation by what it moves
+        slope_c = across_of_c * cos_c - along_of_c * sin_c  # the loop of M3: its equation by what it moves
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        slope_b_2 = select(absolute(slope_b) > k.product_in_rate_b, slope_b, 1.0)
+        motor_s2_by_slope_b = motor_s2 / slope_b_2
+        rate_b = 2.0 * motor_s2_by_slope_b
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        rate_of_y_at_b = rate_of_sin_a1 * k.shoulder_offset
+        sin_a1 = sin(a1)
+        rate_of_level_of_b = 2.0 * motor_s2 * speed_s2
+        rate_of_root_of_b = (
+            -2.0
+            * select(product_in_root_of_b > 0.0, 0.5 / select(product_in_root_of_b > 0.0, root_of_b, 1.0), 0.0)
+            * level_of_b
+            * rate_of_level_of_b
+        )
+        product_in_rate_of_b = k.one_by_divisor_of_b_squared * (sum_in_b * sum_in_b + sum_in_b_2 * sum_in_b_2)
+        product_in_rate_of_b_2 = select(product_in_rate_of_b > 0.0, product_in_rate_of_b, 1.0)
+        rate_of_b = (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b - k.along_of_b_by_divisor_of_b_squared * sum_in_b_2
+        ) * rate_of_level_of_b / product_in_rate_of_b_2 - (
+            k.across_of_b_by_divisor_of_b_squared * sum_in_b_2 + k.along_of_b_by_divisor_of_b_squared * sum_in_b
+        ) * rate_of_root_of_b / product_in_rate_of_b_2
+        rate_of_sin_b = rate_of_b * cos_b
+        rate_of_r23_at_b = rate_of_sin_a1 * sin_b + rate_of_sin_b * sin_a1
+        rate_of_y_at_b_c = rate_of_y_at_b + k.link_length_1 * rate_of_r23_at_b
+        rate_of_cos_motor_m3 = -speed_m3 * sin_motor_m3
+        rate_of_along_of_c = -k.crank_length_times_lever_length_times_2 * rate_of_cos_motor_m3
+        rate_of_sin_motor_m3 = speed_m3 * cos_motor_m3
+        rate_of_across_of_c = -k.crank_length_times_lever_length_times_2 * rate_of_sin_motor_m3
+        sum_in_reach_of_c_squared = divisor_of_c * divisor_of_c
+        quotient_in_rate_of_c = (sum_in_c * sum_in_c + sum_in_c_2 * sum_in_c_2) / sum_in_reach_of_c_squared
+        quotient_in_rate_of_c_2 = 1.0 / (
+            select(quotient_in_rate_of_c > 0.0, quotient_in_rate_of_c, 1.0) * sum_in_reach_of_c_squared
+        )
+        rate_of_level_of_c = (
+            k.crank_base_z_times_crank_length_times_2 * rate_of_sin_motor_m3
+            - k.crank_base_x_times_crank_length_times_2 * rate_of_cos_motor_m3
+        )
+        rate_of_reach_of_c = (
+            2.0
+            * select(sum_in_reach_of_c > 0.0, 0.5 / select(sum_in_reach_of_c > 0.0, reach_of_c, 1.0), 0.0)
+            * (across_of_c * rate_of_across_of_c + along_of_c * rate_of_along_of_c)
+        )
+        rate_of_root_of_c = (
+            2.0
+            * select(-product_in_root_of_c > 0.0, 0.5 / select(-product_in_root_of_c > 0.0, -root_of_c, 1.0), 0.0)
+            * (level_of_c * rate_of_level_of_c - rate_of_reach_of_c * reach_of_c)
+        )
+        sum_in_rate_of_c = (
+            along_of_c * sum_in_c_2 - across_of_c * sum_in_c
+        ) * quotient_in_rate_of_c_2 * rate_of_level_of_c + (
+            across_of_c * sum_in_c_2 + along_of_c * sum_in_c
+        ) * quotient_in_rate_of_c_2 * rate_of_root_of_c
+        rate_of_c = (
+            -sum_in_rate_of_c
+            - (root_of_c * sum_in_c_2 - level_of_c * sum_in_c) * quotient_in_rate_of_c_2 * rate_of_across_of_c
+            - (level_of_c * sum_in_c_2 + root_of_c * sum_in_c) * quotient_in_rate_of_c_2 * rate_of_along_of_c
+        )
+        rate_of_cos_c = -rate_of_c * sin_c
+        rate_of_r21_at_c = rate_of_sin_a1 * cos_c + rate_of_cos_c * sin_a1
+        rate_of_y_at_c = rate_of_y_at_b_c + k.link_length_2 * rate_of_r21_at_c
+        rate_of_y_at_a4 = rate_of_y_at_c + rate_of_sin_a1 * k.wrist_offset_x
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_cos_b = -rate_of_b * sin_b
+        rate_of_z_at_b_c = k.link_length_1 * rate_of_cos_b
+        rate_of_slope_b = -(k.across_of_b * sin_b + k.along_of_b * cos_b) * rate_of_b
+        rate_of_rate_b = (
+            2.0
+            * (
+                speed_s2
+                - select(absolute(slope_b) > k.product_in_rate_b, 1.0, 0.0) * motor_s2_by_slope_b * rate_of_slope_b
+            )
+            / slope_b_2
+        )
+        slope_c_2 = select(absolute(slope_c) > k.product_in_rate_c, slope_c, 1.0)
+        rate_c = shared_sum_3 / slope_c_2
+        rate_of_slope_c = (
+            rate_of_cos_motor_m3 * sin_c - rate_of_sin_motor_m3 * cos_c
+        ) * k.crank_length_times_lever_length_times_2 - (across_of_c * sin_c + along_of_c * cos_c) * rate_of_c
+        rate_of_rate_c = (
+            rate_of_cos_motor_m3 * shared_sum_2
+            + rate_of_sin_motor_m3 * shared_sum
+            + k.crank_length_times_lever_length_times_2 * rate_of_c * (cos_c * cos_motor_m3 + sin_c * sin_motor_m3)
+            - select(absolute(slope_c) > k.product_in_rate_c, 1.0, 0.0) * rate_c * rate_of_slope_c
+        ) / slope_c_2
+        rate_of_x_at_b = rate_of_cos_a1 * k.shoulder_offset
+        rate_of_r13_at_b = rate_of_sin_b * cos_a1 + rate_of_cos_a1 * sin_b
+        rate_of_x_at_b_c = rate_of_x_at_b + k.link_length_1 * rate_of_r13_at_b
+        rate_of_r11_at_c = rate_of_cos_c * cos_a1 + rate_of_cos_a1 * cos_c
+        rate_of_x_at_c = rate_of_x_at_b_c + k.link_length_2 * rate_of_r11_at_c
+        rate_of_x_at_a4 = rate_of_x_at_c + rate_of_cos_a1 * k.wrist_offset_x
+        y_at_b = k.shoulder_offset * sin_a1
+        r23_at_b = sin_a1 * sin_b
+        y_at_b_c = y_at_b + k.link_length_1 * r23_at_b
+        r21_at_c = cos_c * sin_a1
+        y_at_c = y_at_b_c + k.link_length_2 * r21_at_c
+        y_at_a4 = y_at_c + k.wrist_offset_x * sin_a1
+        x_at_b = k.shoulder_offset * cos_a1
+        r13_at_b = cos_a1 * sin_b
+        x_at_b_c = x_at_b + k.link_length_1 * r13_at_b
+        r11_at_c = cos_a1 * cos_c
+        x_at_c = x_at_b_c + k.link_length_2 * r11_at_c
+        x_at_a4 = x_at_c + k.wrist_offset_x * cos_a1
+        y_at_a4_minus_y_at_b_c = y_at_a4 - y_at_b_c
+        x_at_a4_minus_x_at_b_c = x_at_a4 - x_at_b_c
+        z_at_b_c = k.base_height + k.link_length_1 * cos_b
+        z_at_c = z_at_b_c - k.link_length_2 * sin_c
+        z = k.wrist_offset_z + z_at_c
+        z_minus_z_at_b_c = z - z_at_b_c
+        shared_sum_4 = k.base_height + z_minus_z_at_b_c - z
+        shared_sum_5 = z_at_c + z_minus_z_at_b_c - z
+        speed_s2_times_rate_of_rate_b = rate_of_rate_b * speed_s2
+        rate_c_times_speed_m3 = rate_c * speed_m3
+        rate_b_times_speed_s2 = rate_b * speed_s2
+        shared_sum_6 = rate_b_times_speed_s2 - rate_c_times_speed_m3
+        shared_sum_6_times_cos_a1 = shared_sum_6 * cos_a1
+        shared_sum_7 = (z_at_b_c - k.base_height) * rate_b_times_speed_s2 + (z_at_c - z_at_b_c) * rate_c_times_speed_m3
+        shared_sum_6_times_sin_a1 = shared_sum_6 * sin_a1
+        rate_of_sin_c = rate_of_c * cos_c
+        rate_of_z_at_c = rate_of_z_at_b_c - k.link_length_2 * rate_of_sin_c
+        rate_c_times_rate_of_z_at_c = rate_c * rate_of_z_at_c
+        shared_sum_8 = (
+            (x_at_b_c - x_at_b) * rate_b_times_speed_s2 + (x_at_c - x_at_b_c) * rate_c_times_speed_m3
+        ) * rate_of_cos_a1 + (
+            rate_c * (rate_of_x_at_c * cos_a1 + rate_of_y_at_c * sin_a1)
+            + rate_of_rate_c
+            * (
+                (x_at_a4_minus_x_at_b_c + x_at_c - x_at_a4) * cos_a1
+                + (y_at_a4_minus_y_at_b_c + y_at_c - y_at_a4) * sin_a1
+            )
+        ) * speed_m3
+        shared_sum_9 = (
+            rate_of_x_at_b_c * shared_sum_6_times_cos_a1
+            + rate_of_y_at_b_c * shared_sum_6_times_sin_a1
+            - (rate_b_times_speed_s2 * (y_at_b - y_at_b_c) + rate_c_times_speed_m3 * (y_at_b_c - y_at_c))
+            * rate_of_sin_a1
+        )
+        # S2: its loop does not close
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_b) <= k.product_in_pose_is_met) & (2.0 * motor_s2 >= -k.machine_scale_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        # M3: its loop does not close
+        # M3: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(level_of_c) <= 1.000000000001 * reach_of_c) & (-shared_sum_3 >= -k.product_in_pose_is_met_2),
+            Status.IMPOSSIBLE,
+        )
+        # S2: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_b) > k.product_in_rate_b, Status.IMPOSSIBLE)
+        # M3: in the other assembly mode, or too close to a type 2 singularity
+        require(status, absolute(slope_c) > k.product_in_rate_c, Status.IMPOSSIBLE)
+        return (
+            rate_of_cos_a1 * shared_sum_7
+            + rate_of_z_at_b_c * shared_sum_6_times_cos_a1
+            + speed_m3 * (rate_c_times_rate_of_z_at_c * cos_a1 + rate_of_rate_c * shared_sum_5 * cos_a1)
+            - rate_of_y_at_a4 * speed_a1
+            - shared_sum_4 * speed_s2_times_rate_of_rate_b * cos_a1,
+            rate_of_sin_a1 * shared_sum_7
+            + rate_of_x_at_a4 * speed_a1
+            + rate_of_z_at_b_c * shared_sum_6_times_sin_a1
+            + (rate_c_times_rate_of_z_at_c * sin_a1 + rate_of_rate_c * shared_sum_5 * sin_a1) * speed_m3
+            - shared_sum_4 * speed_s2_times_rate_of_rate_b * sin_a1,
+            (
+                rate_b * (rate_of_x_at_b * cos_a1 + rate_of_y_at_b * sin_a1)
+                + rate_of_rate_b
+                * (
+                    (x_at_a4_minus_x_at_b_c + x_at_b - x_at_a4) * cos_a1
+                    + (y_at_a4_minus_y_at_b_c + y_at_b - y_at_a4) * sin_a1
+                )
+            )
+            * speed_s2
+            - shared_sum_8
+            - shared_sum_9,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

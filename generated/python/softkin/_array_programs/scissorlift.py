@@ -151,6 +151,41 @@ class ArrayPrograms(Programs):
         )
         return ((0.0, 0.0), (0.0, 0.0), (rate_h, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 1.0)), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_s1, axis_a2 = axes
+        speed_s1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a2, axis_s1, speed_a2, speed_s1), Status.BAD_INPUT)
+        motor_s1 = axis_s1 - k.offset_s1
+        rest_of_h = k.beam_length_squared - motor_s1 * motor_s1
+        h = root(rest_of_h)
+        slope_h = 2.0 * h  # the loop of S1: its equation by what it moves
+        rate_of_rest_of_h = -2.0 * motor_s1 * speed_s1
+        rate_of_h = select(rest_of_h > 0.0, 0.5 / select(rest_of_h > 0.0, h, 1.0), 0.0) * rate_of_rest_of_h
+        rate_of_slope_h = 2.0 * rate_of_h
+        slope_h_2 = select(absolute(slope_h) > k.product_in_rate_h, slope_h, 1.0)
+        rate_of_rate_h = (
+            2.0
+            * (
+                select(absolute(slope_h) > k.product_in_rate_h, 1.0, 0.0) * motor_s1 * rate_of_slope_h / slope_h_2
+                - speed_s1
+            )
+            / slope_h_2
+        )
+        # S1: its loop does not close
+        # S1: in the other assembly mode, or too close to a type 2 singularity
+        require(
+            status,
+            (absolute(slope_h) > k.product_in_rate_h)
+            & (rest_of_h >= -1e-12 * absolute(rest_of_h))
+            & (2.0 * motor_s1 >= -k.beam_length_times_free_angle),
+            Status.IMPOSSIBLE,
+        )
+        return (0.0, 0.0, rate_of_rate_h * speed_s1, 0.0, 0.0, 0.0), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation
