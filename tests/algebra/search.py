@@ -57,7 +57,7 @@ symmetric about its start, roots are as far to both sides, and rounding would ch
 The next root ahead is further away than this.
 """
 MOST_PASSES = 6000
-"""The passes of the search, at most: about 60 at a random pose, up to 2,700 next to a folded elbow, where many starts
+"""The passes of the search, at most: about 60 at a random pose, up to 3,100 next to a folded elbow, where many starts
 of a part lead to other branches.
 """
 _LOOKING, _SHORTENING, _SETTLING, _MEETING = map(sp.Integer, range(4))

@@ -15,7 +15,7 @@ POINTS, BESIDE = 9, 3
 """The number of points; the starts of a length: where it is shortest, then a little behind and before it."""
 _FRACTIONS = ("0.5", "0", "1", "0.25", "0.75", "0.125", "0.375", "0.625", "0.875")
 """Where the points stand in a part."""
-_WIDTHS = (("1e-9", 1), ("1e-4", 3), ("1e-2", 5))
+_WIDTHS = (("1e-9", 1), ("1e-3", 3), ("1e-1", 5))
 """A part up to this width has only so many points."""
 _NARROW = sp.Float("1e-6")
 """In a part up to this width no length is looked for."""

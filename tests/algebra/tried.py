@@ -29,7 +29,7 @@ _LEAST, _WAY = real("least"), real("way")
 _LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
 _ASIDE = sp.Float("1.7")
 """The tangent of 60 degrees."""
-_GRID, _SECANTS, _NEWTONS = 9, 12, 8
+_GRID, _SECANTS, _NEWTONS = 5, 6, 5
 _STILL = sp.Float("1e-10")
 """A step of this length (radians) ends the method: the steps on the closure follow."""
 _ZERO, _ONE, _MOST = sp.Integer(0), sp.Integer(1), sp.Float("1e30")

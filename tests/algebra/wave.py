@@ -35,7 +35,7 @@ NOISE, FIFTH = real("noise"), real("bound_of_fifth")
 """Where the wave is smaller, it is rounding; a bound of its fifth derivative, over 5!."""
 _BEYOND = 2
 """The number of waves beyond the degree."""
-_MORE, _ROUNDING = 32, sp.Float("1e-14")
+_MORE, _ROUNDING = 1000, sp.Float("1e-14")
 """The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
 _MACHINES, _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 6, 96, 4, 16, 1e-10
 
