@@ -7,8 +7,9 @@ turning axes. So its zeros can be found without a gap: nothing that is a solutio
 
 product: the residual without roots
 wave: the product as a sum of waves, and its rounding
-parts: the parts of the circle in which the wave may be zero
-closure: the trial, and steps on the closure from what it gives
-settle: a start in a part, and the least residual next to it
-search: the loop over parts and starts
+parts: a step around the circle on which the wave does not vanish
+closure: the trial, a step on the closure from what it gives, and whether joints are on the branch
+starts: the starts in a part of the circle in which the wave may vanish
+tried: the trials in a part: the least residual next to a start
+search: one loop, each pass of which makes one step of what the search is at
 """

@@ -12,34 +12,29 @@ from derive.equations.axes import held_lets, reference_value
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import (
-    BOUNDARY,
-    CONVERGED,
-    COST_OF_A_STALL,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
-    PASSES,
     SHARE_OF_DAMPING,
-    STALLED,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, Wrap, larger
-from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement, rewritten
-from derive.ir.symbols import SCALE, TRIED, cosine, count, flag, real, sine
+from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.symbols import SCALE, TRIED, cosine, flag, real, sine
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.scan.derivations import Scanned, _sides, named_apart
+from derive.kinematics.scan.guards import conditions_of, least, room_of
 from derive.kinematics.scan.programs import (
     FITS,
     GOAL,
     _agreement,
     _errors,
-    _named_entries,
     solved_value,
     with_goal,
 )
 
-IS_MET = flag("meets_pose")
+ERROR = real("error")
 _SHRINKING = real("shrinking")
 _ZERO = sp.Integer(0)
 
@@ -55,6 +50,8 @@ class Trial:
     """The residual, a number without a unit."""
     lengths: tuple[sp.Symbol, ...]
     """Each turns an angle, which turns fast where it is short."""
+    room: sp.Symbol
+    """How far, without a unit, the nearest step is from where its two roots join."""
 
 
 def trial_on_branch(both: Scanned) -> Trial:
@@ -86,12 +83,15 @@ def _trial(
 ) -> Trial:
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])
-    short = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
-    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(short, 1)]
-    statements = with_goal(named_apart((*first, *solved, left, *lengths), "tried"))
+    values = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
+    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(values, 1)]
+    rooms = [room_of(c) for c in conditions_of(solved)]
+    room = Let(real("room"), least(rooms) if rooms else sp.Integer(1))
+    statements = with_goal(named_apart((*first, *solved, left, *lengths, room), "tried"))
     signed = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     plain = tuple(s for s in signed if isinstance(s, Let))
-    return Trial(plain, real("residual_tried"), tuple(real(f"{let.name.name}_tried") for let in lengths))
+    left_over, *short = (real(f"{let.name.name}_tried") for let in (left, *lengths))
+    return Trial(plain, left_over, tuple(short), real("room_tried"))
 
 
 def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
@@ -107,69 +107,64 @@ def begun(joint: sp.Symbol) -> sp.Symbol:
     return real(f"begun_{joint.name}")
 
 
-def finish_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
-    """The program that meets the pose from joints nearby, and tells whether it does, and whether these joints fit: no
-    value in `wanted` may be negative.
-    """
-    joints = [j.symbol for j in mechanism.solved_joints]
-    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
-    loop, jacobian = steps_on_closure(mechanism, [begun(j) for j in joints])
-    last = Solve((), jacobian, (), determinant, "determinant of the Jacobian, positions in characteristic lengths")
-    met = Let(IS_MET, sp.Le(real("error"), CONVERGED))
-    fits = Let(flag(FITS), sp.And(IS_MET, *(sp.Ge(w, -NEARLY) for w in wanted)))
-    outputs = [Output(FITS, fits.name), Output(IS_MET.name, IS_MET)]
-    outputs += [Output(f"joint_{j.symbol.name}", j.symbol) for j in mechanism.joints]
-    program = normalise("finish_root", (*held, loop, last, met, fits), outputs)
-    return replace(program, summary="The joints that meet the pose, and whether they are on the branch")
+def moved_to(joint: sp.Symbol) -> sp.Symbol:
+    """A joint behind a step on the closure."""
+    return real(f"moved_{joint.name}")
 
 
-def steps_on_closure(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
-    """Steps on the closure, those of damped least squares, J^T (J J^T + d)^-1 e, and the Jacobian where they end.
+def step_program(mechanism: Mechanism) -> Program:
+    """The program that makes one step of damped least squares, J^T (J J^T + d)^-1 e, towards the pose.
 
     The damping d is a share of the error. What does not change the pose does not move. Next to a double root every
-    step leaves a third of the error; steps that leave nearly all of it are soon given up.
+    step leaves a third of the error.
     """
     joints = [j.symbol for j in mechanism.solved_joints]
     lengths = {j.symbol for j in mechanism.solved_joints if not j.is_angle}
-    composed, (lets, entries) = named_pose(mechanism), solved_entries(mechanism)
-    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
-    scaled = list(scaled_entries(mechanism, entries))
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(mechanism), 1)]
-    names = [let.name for let in errors]
-    steps = tuple(real(f"step_{j.name}") for j in joints)
-    error, before, left, cost = real("error"), real("error_before"), count("passes_left"), count("cost")
-    agreement = _agreement(mechanism)
+    names, agreement = [let.name for let in errors], _agreement(mechanism)
     squares = [*(n**2 for n in names), *(Select(sp.Gt(let.name, 1), _ZERO, sp.Integer(1)) for let in agreement)]
-    rates, jacobian = _named_entries(scaled, len(joints))
-    is_last = sp.Or(sp.Gt(2 * error, before), sp.Le(left, 0))
-    is_stalled = sp.Gt(error, STALLED * before)
-    body = (
-        *composed.statements,
-        *pose,
-        *errors,
-        *agreement,
-        Let(error, Root(sp.Add(*squares)), "pose error, in characteristic lengths and radians"),
-        *lets,
-        *rates,
-        *_shortest_step(jacobian, names, steps),
-        Let(cost, Select(is_stalled, sp.Integer(COST_OF_A_STALL), sp.Integer(1))),
+    size = Let(ERROR, Root(sp.Add(*squares)), "pose error, in characteristic lengths and radians")
+    lets, jacobian = _named_jacobian(mechanism)
+    steps = tuple(real(f"step_{j.name}") for j in joints)
+    shortest = _shortest_step(jacobian, names, steps)
+    body = (*_posed(mechanism), *errors, *agreement, size, *lets, *shortest)
+    moved = [Output(moved_to(j).name, j + _way(j, s, lengths)) for j, s in zip(joints, steps, strict=True)]
+    program = normalise("step_on_closure", body, [Output(ERROR.name, ERROR), *moved])
+    return replace(program, summary="A step of all joints towards the pose, and the error before it")
+
+
+def fits_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
+    """The program that tells whether joints are on the branch: no value in `wanted` is negative."""
+    lets, jacobian = _named_jacobian(mechanism)
+    last = Solve(
+        (), tuple(jacobian), (), determinant, "determinant of the Jacobian, positions in characteristic lengths"
     )
-    loop = Iterate(
-        state=(*joints, before, left),
-        start=(*start, sp.Integer(9), sp.Integer(PASSES)),
-        step=tuple(s for s in body if isinstance(s, Let | Solve)),
-        following=(*(j + _way(j, s, lengths) for j, s in zip(joints, steps, strict=True)), error, left - cost),
-        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.And(sp.Le(error, CONVERGED), is_last), sp.Le(left, 0)),
-        limit=PASSES + 1,
-        otherwise=None,
-        note="steps of damped least squares on the closure",
-    )
-    return loop, tuple(jacobian)
+    fits = Let(flag(FITS), sp.And(*(sp.Ge(w, -NEARLY) for w in wanted)))
+    body: tuple[Statement, ...] = (*_posed(mechanism), *lets, last, fits)
+    program = normalise("is_on_branch", body, [Output(FITS, fits.name)])
+    return replace(program, summary="Whether joints are on the wanted branch")
+
+
+def _posed(mechanism: Mechanism) -> list[Statement]:
+    """The statements that compute the pose at the joints."""
+    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
+    composed = named_pose(mechanism)
+    pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
+    return [*held, *composed.statements, *pose]
 
 
 def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp.Expr:
     """The step of a joint, within bounds: that of a slide is counted in lengths of the machine."""
     return step * _SHRINKING * (SCALE if joint in lengths else 1)
+
+
+def _named_jacobian(mechanism: Mechanism) -> tuple[list[Statement], sp.Matrix]:
+    """The statements that compute the Jacobian, and the Jacobian by the names of its entries."""
+    lets, entries = solved_entries(mechanism)
+    scaled, width = list(scaled_entries(mechanism, entries)), len(mechanism.solved_joints)
+    names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(scaled)]
+    rates = [Let(name, value) for name, value in zip(names, scaled, strict=True) if not value.is_number]
+    return [*lets, *rates], sp.Matrix(len(scaled) // width, width, names)
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
@@ -182,7 +177,7 @@ def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequ
     damping, length = real("damping"), real("step_length")
     is_long = sp.Gt(length, LONGEST_STEP)
     return [
-        Let(damping, larger(SHARE_OF_DAMPING * real("error"), LEAST_DAMPING)),
+        Let(damping, larger(SHARE_OF_DAMPING * ERROR, LEAST_DAMPING)),
         *(Let(names[i, j], product[i, j] + (damping if i == j else 0)) for i, j in upper),
         Solve(
             multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"

@@ -1,216 +1,306 @@
-"""The search: every part of the circle is looked at from each of its starts, and what fits is compared.
+"""The search: one loop, in each pass of which one step is made of what the search is at.
 
-The answer is the root nearest to the start; or the next one ahead of it, where all are asked for, one after the other.
-From a start the joint is settled on the wanted branch, on both sides of a step whose roots may join there, then the
-whole closure is met. If that leads to another branch, the joints are mirrored about the start: two solutions that meet
-stand on both sides of it.
+It looks around the circle, from the start to both sides, for parts in which the wave may vanish. In a part there are
+starts, on both sides of a step whose roots may join there. From a start the joint is settled on the wanted branch, and
+then the whole closure is met. If that leads to another branch, the joints are mirrored about where they began: two
+solutions that meet stand on both sides of it. The answer is the root nearest to the start; or the next one ahead of it,
+where all are asked for, one after the other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.description.mechanism import Mechanism
 from derive.equations.axes import reference_value
+from derive.ir.constants import BOUNDARY, CONVERGED, COST_OF_A_STALL, PASSES, STALLED
 from derive.ir.passes import normalise
-from derive.ir.primitives import Select, Wrap
+from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.derivations import Scanned, wanted
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
 from derive.kinematics.scan.programs import FITS, FOUND, GOAL, LOOKED_FOR, START
-from tests.algebra.closure import IS_MET, begun, finish_program, joints_program, trial_on_branch
-from tests.algebra.parts import AT, END, HIGH, IS_PART, LOW, MOST_STEPS, STEPS, part_program
-from tests.algebra.settle import NUMBER, REMAINS, SETTLED, next_number, settle_program, try_program
-from tests.algebra.wave import BEGIN, wave_program
+from tests.algebra.closure import ERROR, begun, fits_program, joints_program, moved_to, step_program, trial_on_branch
+from tests.algebra.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
+from tests.algebra.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
+from tests.algebra.tried import (
+    AT,
+    BEST_NOW,
+    LEAST_NOW,
+    ROOM,
+    better,
+    lengths_of,
+    newton_is_done,
+    newton_step,
+    shortest_is_done,
+    shortest_step,
+    trials_begun,
+    trials_go_on,
+    try_program,
+    turned_by_a_sixth,
+)
+from tests.algebra.wave import wave_program
 
+FIND_ROOT = "find_root"
+"""The name of the program."""
 ONWARD = flag("onward")
 """Whether the next root ahead of the start is wanted, not the nearest one."""
 AWAY = real("away")
 """How far (radians) the root is away from the start."""
-MOST_STARTS = 320
-"""The starts, at most."""
 AHEAD = sp.Float("1e-7")
 """The nearest root is the one nearest to a joint that is ahead of the start by this (radians). Where a machine is
 symmetric about its start, roots are as far to both sides, and rounding would choose, in every language another one.
 The next root ahead is further away than this.
 """
+MOST_PASSES = 6000
+"""The passes of the search, at most: about 60 at a random pose, up to 3,100 next to a folded elbow, where many starts
+of a part lead to other branches.
+"""
+_LOOKING, _SHORTENING, _SETTLING, _MEETING = map(sp.Integer, range(4))
+"""What the search is at: it looks for a part, for where a length is shortest, for a joint value, for the closure."""
+_STAGE, _PLACE, _WIDTH = count("stage"), real("place"), real("width")
+_NUMBER, _SHORTEST, _ASIDE = count("number_of_start"), real("shortest"), real("aside")
+_BEFORE, _LEFT, _MIRRORED = real("error_before"), count("steps_left"), flag("was_mirrored")
+_NEAREST, _PASSES_LEFT = real("nearest"), count("passes_left")
+FIRST, LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
+"""The width of a part to begin with, and of one that is not widened further: it is followed by another."""
 _NEAR = sp.Float("1e-3")
 """The closure is met only from where the residual of the branch is at most this."""
+_ROOM = sp.Float("1e-6")
+"""Where a step has this room, its two roots are too far apart to be on both branches."""
+_MOVED = sp.Float("1e-8")
+"""How far (radians, lengths of the machine) joints move that lead to another branch."""
 _TURN = 2 * sp.pi
 _ZERO, _ONE, _FAR = sp.Integer(0), sp.Integer(1), sp.Integer(9)
 
 
-def search_program(
-    programs: tuple[Program, Program, Program, Program, Program, Program],
-    joints: tuple[Sequence[sp.Symbol], Sequence[sp.Symbol]],
-    searched: sp.Symbol,
-    arguments: Sequence[sp.Symbol],
-    is_always: bool,
-) -> Program:
-    """The search by its programs: wave, part, trial, settle, joints, finish. joints: those that are solved, and all."""
-    wave, part, trial, settle, joints_at, finish = programs
-    solved, every = joints
-    begin, end = real("begin"), real("end_of_circle")
-    state, following = _state(solved, every)
-    waves = _call(wave, arguments)
-    step = (
-        *_place(part, waves.names, end),
-        *_start(settle, joints_at, arguments, solved),
-        *_answer(finish, arguments, trial, solved, every, searched),
+@dataclass(frozen=True)
+class Steps:
+    """The programs of the steps: they look, try a joint value, give all joints there, step, and tell the branch."""
+
+    look: Program
+    trial: Program
+    joints_at: Program
+    step: Program
+    fits: Program
+
+
+def search_of(both: Scanned) -> Program:
+    """The program that finds a root of a machine by algebra."""
+    mechanism = both.mechanism
+    wave, degree = wave_program(both)
+    trial = trial_on_branch(both)
+    steps = Steps(
+        look=look_program(degree),
+        trial=try_program(trial),
+        joints_at=joints_program(mechanism, trial),
+        step=step_program(mechanism),
+        fits=fits_program(mechanism, margins_wanted(both), DETERMINANT),
     )
-    first = [begin, begin, begin, *[_ZERO] * (len(state) - 3)]
-    start = dict(zip(state, first, strict=True)) | {STEPS_LEFT: sp.Integer(MOST_STEPS), SIDE_NOW: _ONE}
-    start |= {STARTS: sp.Integer(MOST_STARTS), NEAREST: _FAR}
-    is_done = sp.Or(sp.Ge(PLACE, end), sp.Le(STARTS, 0), sp.And(ONWARD, sp.Lt(NEAREST, _FAR), sp.Eq(NUMBER_NOW, 0)))
+    given = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
+    names = tuple(real(o.name) for o in wave.outputs)
+    before = Call(wave, tuple((s, s) for s in wave.inputs if s in given), names)
+    return search_program(mechanism, steps, (*given, *names), before)
+
+
+def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Symbol], wave: Call) -> Program:
+    """The search. arguments: those of its steps that do not change in it."""
+    assert mechanism.search is not None
+    joints = [j.symbol for j in mechanism.solved_joints]
+    lengths = lengths_of(steps.trial)
+    body = (
+        *_looked(steps.look, arguments),
+        *_tried(steps, arguments, lengths),
+        *_met(steps, arguments, joints, mechanism.search.joint.symbol),
+        *_next_start(lengths, SIDE in steps.trial.inputs),
+        *_ends(),
+    )
+    begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(MOST_PASSES)}
+    begin |= {_PLACE: Select(ONWARD, AHEAD, _ZERO), _MIRRORED: sp.false}
+    following = _following(joints)
+    named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
+    is_always = mechanism.search.where is None
     loop = Iterate(
-        state=tuple(state),
-        start=tuple(start[n] for n in state),
-        step=step,
-        following=tuple(following[n] for n in state),
-        done=sp.Or(sp.Not(LOOKED_FOR), is_done),
-        limit=2 * MOST_STARTS,
+        state=tuple(following),
+        start=tuple(begin.get(n, _ZERO) for n in following),
+        step=(*body, *named),
+        following=tuple(let.name for let in named),
+        done=flag("is_over") if is_always else sp.Or(sp.Not(LOOKED_FOR), flag("is_over")),
+        limit=MOST_PASSES + 1,
         otherwise=None,
-        note="the parts of the circle, and their starts",
+        note="one step of the search",
     )
-    before: list[Let | Call | Iterate] = [
-        replace(waves, wanted=sp.true if is_always else LOOKED_FOR),
-        Let(begin, Select(ONWARD, START + AHEAD, BEGIN)),
-        Let(end, begin + Select(ONWARD, _TURN - 2 * AHEAD, _TURN)),
-    ]
+    found = {j: _kept_now(j) for j in joints} | {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    nearest = real("nearest_now")
     outputs = [
-        Output(FOUND.name, sp.Lt(NEAREST, _FAR)),
-        Output(AWAY.name, Select(sp.Lt(NEAREST, _FAR), NEAREST, _ZERO)),
+        Output(FOUND.name, sp.Lt(nearest, _FAR)),
+        Output(AWAY.name, Select(sp.Lt(nearest, _FAR), nearest, _ZERO)),
+        *(Output(f"found_{j.symbol.name}", found[j.symbol]) for j in mechanism.joints),
     ]
-    outputs += [Output(f"found_{j.name}", _kept(j)) for j in every]
-    program = normalise("find_root", (*before, loop), outputs)
-    return replace(
-        program, summary="The joints at the root nearest to the start, or next ahead of it; zeros where there is none"
-    )
-
-
-PLACE, PART_LOW, PART_HIGH = real("place"), real("low_before"), real("high_before")
-NUMBER_NOW, SIDE_NOW, STEPS_LEFT, STARTS = (
-    count("start_before"),
-    count("side_before"),
-    count("steps_before"),
-    count("starts_left"),
-)
-NEAREST, MIRRORED = real("nearest"), count("mirrored")
+    program = normalise(FIND_ROOT, (wave, loop), outputs)
+    return replace(program, summary="The joints at the root nearest to the start, or next ahead of it")
 
 
 def _kept(joint: sp.Symbol) -> sp.Symbol:
     return real(f"kept_{joint.name}")
 
 
-def _mirror(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"mirror_{joint.name}")
+def _kept_now(joint: sp.Symbol) -> sp.Symbol:
+    return real(f"kept_now_{joint.name}")
 
 
-def _state(solved: Sequence[sp.Symbol], every: Sequence[sp.Symbol]) -> tuple[list[sp.Symbol], dict[sp.Symbol, sp.Expr]]:
-    """The state of the search, and what follows."""
-    goes_on = flag("goes_on")
-    following: dict[sp.Symbol, sp.Expr] = {
-        PLACE: Select(goes_on, PLACE, real("high_now")),
-        PART_LOW: real("low_now"),
-        PART_HIGH: real("high_now"),
-        NUMBER_NOW: Select(goes_on, count("next_start"), _ZERO),
-        SIDE_NOW: Select(goes_on, count("next_side"), _ONE),
-        STEPS_LEFT: count("steps_now"),
-        STARTS: STARTS - Select(flag("has_part"), _ONE, _ZERO),
-        NEAREST: Select(flag("is_better"), real("distance"), NEAREST),
-        MIRRORED: Select(flag("mirrors"), _ONE, _ZERO),
-    }
-    following |= {_kept(j): Select(flag("is_better"), real(f"joint_{j.name}"), _kept(j)) for j in every}
-    following |= {_mirror(j): real(f"mirror_now_{j.name}") for j in solved}
-    return list(following), following
-
-
-def _call(program: Program, arguments: Sequence[sp.Symbol], given: dict[sp.Symbol, sp.Expr] | None = None) -> Call:
+def _call(
+    program: Program, arguments: Sequence[sp.Symbol], given: Mapping[sp.Symbol, sp.Expr], wanted: sp.Basic
+) -> Call:
     """A call with arguments of the search as they are, and others."""
-    own = {s: s for s in program.inputs if s in arguments} | (given or {})
+    own = {s: s for s in program.inputs if s in arguments} | dict(given)
     pairs = tuple((s, own[s]) for s in program.inputs if s in own)
-    return Call(program, pairs, tuple(called(o.name, _like(program, o)) for o in program.outputs))
+    flags = {IS_ROUNDING.name: IS_ROUNDING, FITS: IS_ROUNDING}
+    names = tuple(called(o.name, flags.get(o.name, ERROR)) for o in program.outputs)
+    return Call(program, pairs, names, wanted=wanted)
 
 
-def _like(program: Program, output: Output) -> sp.Symbol:
-    """A symbol of the type of an output."""
-    if output.name in (FITS, IS_MET.name, IS_PART.name):
-        return FOUND
-    return STEPS if output.name.startswith("steps") else AT
+def _is_at(stage: sp.Integer) -> sp.Basic:
+    return sp.Eq(_STAGE, stage)
 
 
-def _place(part: Program, waves: Sequence[sp.Symbol], end: sp.Symbol) -> Iterator[Let | Call]:
-    """The part that is looked at: the next one, where that before is done."""
-    is_between = flag("is_between")
-    yield Let(is_between, sp.Eq(NUMBER_NOW, 0))
-    given: dict[sp.Symbol, sp.Expr] = {w: w for w in waves} | {AT: PLACE, END: end, STEPS: STEPS_LEFT}
-    call = _call(part, (), {s: given[s] for s in part.inputs if s in given})
-    yield replace(call, wanted=sp.And(is_between, sp.Lt(PLACE, end)))
-    yield Let(real("low_now"), Select(is_between, LOW, PART_LOW))
-    yield Let(real("high_now"), Select(is_between, HIGH, PART_HIGH))
-    yield Let(count("steps_now"), Select(is_between, count("steps_still_left"), STEPS_LEFT))
-    yield Let(count("number_now"), Select(is_between, _ONE, NUMBER_NOW))
-    yield Let(flag("has_part"), sp.Or(sp.Not(is_between), IS_PART))
+def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Call]:
+    """Whether a part, or the way around the circle, ends here."""
+    given = {AHEAD_BY: _PLACE + _WIDTH, DIRECTION: DIRECTION}
+    yield _call(look, (*arguments, START), given, _is_at(_LOOKING))
+    is_part = sp.Gt(_WIDTH, 0)
+    ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, LONGEST))
+    yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
+    # what is further away than the nearest root need not be looked at
+    away = Select(sp.Lt(_NEAREST, sp.pi), _NEAREST + 2 * AHEAD, sp.pi)
+    end = Select(ONWARD, _TURN - AHEAD, away)
+    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, end)))
 
 
-def _start(
-    settle: Program, joints_at: Program, arguments: Sequence[sp.Symbol], solved: Sequence[sp.Symbol]
+def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterator[Let | Call]:
+    """A trial, and whether the joint value is settled."""
+    direction, ends = ToReal(DIRECTION), (_PLACE, _PLACE + _WIDTH)
+    is_trial = sp.Or(_is_at(_SHORTENING), _is_at(_SETTLING))
+    given = {TRIED: START + direction * AT, SIDE: SIDE}
+    yield _call(steps.trial, arguments, {s: v for s, v in given.items() if s in steps.trial.inputs}, is_trial)
+    chosen = [
+        of_length(lengths, _NUMBER, [real(f"{n}_{k}") for k in range(1, 1 + lengths)]) if lengths else _ZERO
+        for n in ("length", "growth")
+    ]
+    yield from better(_is_at(_SHORTENING), chosen[0])
+    yield from newton_step(ends, direction)
+    yield from shortest_step(ends, direction * chosen[1])
+    yield Let(flag("is_shortest"), sp.And(_is_at(_SHORTENING), shortest_is_done()))
+    yield Let(real("shortest_now"), Select(flag("is_shortest"), BEST_NOW, _SHORTEST))
+    yield Let(real("aside_now"), Select(flag("is_shortest"), turned_by_a_sixth(), _ASIDE))
+    yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(is_point(_WIDTH))))
+    # a simple root leaves no residual on its branch; the other side of a step counts only where its roots join
+    is_simple = sp.And(sp.Le(LEAST_NOW, _NEAR), sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
+    yield Let(flag("is_near"), sp.And(flag("is_settled"), sp.Or(sp.Not(is_narrow(_WIDTH)), is_simple)))
+    given = {TRIED: START + direction * BEST_NOW, SIDE: SIDE}
+    given = {s: v for s, v in given.items() if s in steps.joints_at.inputs}
+    yield _call(steps.joints_at, arguments, given, flag("is_near"))
+
+
+def _met(
+    steps: Steps, arguments: Sequence[sp.Symbol], joints: Sequence[sp.Symbol], searched: sp.Symbol
 ) -> Iterator[Let | Call]:
-    """The joints from which the closure is met: those of a start, or mirrored ones."""
-    is_new = flag("is_new")
-    yield Let(is_new, sp.And(flag("has_part"), sp.Eq(MIRRORED, 0)))
-    places = {LOW: real("low_now"), HIGH: real("high_now"), NUMBER: count("number_now"), SIDE: SIDE_NOW}
-    given = {s: places[s] for s in settle.inputs if s in places}
-    yield replace(_call(settle, arguments, given), wanted=is_new)
-    given = {s: v for s, v in ((TRIED, SETTLED), (SIDE, SIDE_NOW)) if s in joints_at.inputs}
-    yield Let(flag("is_near"), sp.And(is_new, sp.Le(REMAINS, _NEAR)))
-    yield replace(_call(joints_at, arguments, given), wanted=flag("is_near"))
-    yield Let(flag("is_tried"), sp.And(flag("has_part"), sp.Or(flag("is_near"), sp.Not(is_new))))
-    for j in solved:
-        yield Let(real(f"start_{j.name}"), Select(is_new, begun(j), _mirror(j)))
+    """A step on the closure; where it is met, whether the joints fit, and are the nearest."""
+    here: dict[sp.Symbol, sp.Expr] = {j: j for j in joints}
+    yield _call(steps.step, arguments, here, _is_at(_MEETING))
+    is_last = sp.Or(sp.Gt(2 * ERROR, _BEFORE), sp.Le(_LEFT, 0))
+    ends = sp.Or(sp.Le(ERROR, BOUNDARY / 100), sp.And(sp.Le(ERROR, CONVERGED), is_last), sp.Le(_LEFT, 0))
+    yield Let(flag("steps_end"), sp.And(_is_at(_MEETING), ends))
+    yield Let(flag("meets_pose"), sp.And(flag("steps_end"), sp.Le(ERROR, CONVERGED)))
+    yield _call(steps.fits, arguments, here, flag("meets_pose"))
+    ahead = searched - START - AHEAD
+    yield Let(real("distance_ahead"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
+    within = sp.Or(
+        sp.Not(ONWARD), sp.And(sp.Gt(real("distance_ahead"), AHEAD), sp.Lt(real("distance_ahead"), _TURN - AHEAD))
+    )
+    fits = sp.And(flag("meets_pose"), flag(FITS))
+    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance_ahead"), _NEAREST)))
+    yield Let(real("nearest_now"), Select(flag("is_better"), real("distance_ahead"), _NEAREST))
+    yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
+    has_moved = sp.Gt(real("moved"), _MOVED)
+    yield from (Let(_kept_now(j), Select(flag("is_better"), j, _kept(j))) for j in joints)
+    yield Let(flag("mirrors"), sp.And(flag("meets_pose"), sp.Not(flag(FITS)), sp.Not(_MIRRORED), has_moved))
 
 
-def _answer(
-    finish: Program,
-    arguments: Sequence[sp.Symbol],
-    trial: Program,
-    solved: Sequence[sp.Symbol],
-    every: Sequence[sp.Symbol],
-    searched: sp.Symbol,
-) -> Iterator[Let | Call]:
-    """Whether it fits, and is better than what was found; and what follows."""
-    given = {begun(j): real(f"start_{j.name}") for j in solved}
-    has_part, fits, mirrors = flag("has_part"), flag(FITS), flag("mirrors")
-    yield replace(_call(finish, arguments, given), wanted=flag("is_tried"))
-    ahead = real(f"joint_{searched.name}") - START - AHEAD
-    distance = Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead)))
-    yield Let(real("distance"), distance)
-    within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("distance"), AHEAD), sp.Lt(real("distance"), _TURN - AHEAD)))
-    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance"), NEAREST)))
-    yield Let(mirrors, sp.And(flag("is_near"), IS_MET, sp.Not(fits)))
-    for j in solved:
-        yield Let(real(f"mirror_now_{j.name}"), 2 * real(f"start_{j.name}") - real(f"joint_{j.name}"))
-    is_second = sp.Lt(SIDE_NOW, 0)
-    width = real("high_now") - real("low_now")
-    follows = next_number(trial, count("number_now"), width)
-    yield Let(count("next_side"), Select(mirrors, SIDE_NOW, -SIDE_NOW))
-    yield Let(count("next_start"), Select(sp.Or(mirrors, sp.Not(is_second)), count("number_now"), follows))
-    yield Let(flag("goes_on"), sp.And(has_part, sp.Gt(count("next_start"), 0)))
+def _next_start(lengths: int, has_sides: bool) -> Iterator[Let]:
+    """The start that follows, if one ends here."""
+    is_unsettled = sp.And(flag("is_settled"), sp.Not(flag("is_near")))
+    yield Let(flag("start_ends"), sp.Or(is_unsettled, sp.And(flag("steps_end"), sp.Not(flag("mirrors")))))
+    yield Let(count("next_number"), next_number(lengths, _NUMBER, _WIDTH))
+    yield Let(flag("is_nearest"), sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD))
+    is_last = sp.Or(flag("is_nearest"), sp.Eq(count("next_number"), 0))
+    has_other = sp.And(sp.Gt(SIDE, 0), sp.Not(flag("is_nearest"))) if has_sides else sp.false
+    yield Let(flag("side_ends"), sp.And(flag("start_ends"), is_last, has_other))
+    yield Let(flag("part_is_done"), sp.And(flag("start_ends"), is_last, sp.Not(flag("side_ends"))))
+    yield Let(flag("is_first"), sp.Or(flag("part_ends"), flag("side_ends")))
+    moves_on = Select(flag("start_ends"), count("next_number"), _NUMBER)
+    yield Let(count("number_now"), Select(flag("is_first"), _ONE, moves_on))
+    yield Let(flag("begins"), sp.And(sp.Or(flag("part_ends"), flag("start_ends")), sp.Not(flag("part_is_done"))))
+    of_new_length = is_new_length(lengths, count("number_now")) if lengths else sp.false
+    yield Let(flag("seeks_length"), sp.And(flag("begins"), of_new_length))
+    ends = (_PLACE, _PLACE + _WIDTH)
+    place = place_of(lengths, count("number_now"), ends, real("shortest_now"), real("aside_now"))
+    yield Let(real("place_of_start"), Select(flag("seeks_length"), _PLACE, place))
 
 
-def search_of(both: Scanned) -> Program:
-    """The program that finds a root of a machine by algebra."""
-    mechanism = both.mechanism
-    assert mechanism.search is not None
-    arguments = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
-    wave, degree = wave_program(both)
-    trial = trial_on_branch(both)
-    tries = try_program(trial)
-    settle = settle_program(tries, (*arguments, SIDE))
-    finish = finish_program(mechanism, margins_wanted(both), DETERMINANT)
-    programs = (wave, part_program(degree), tries, settle, joints_program(mechanism, trial), finish)
-    joints = [j.symbol for j in mechanism.solved_joints], [j.symbol for j in mechanism.joints]
-    return search_program(programs, joints, mechanism.search.joint.symbol, arguments, mechanism.search.where is None)
+def _ends() -> Iterator[Let]:
+    """What the search is at in the next pass, and whether it is over."""
+    meets = sp.Or(flag("is_near"), flag("mirrors"), sp.And(_is_at(_MEETING), sp.Not(flag("steps_end"))))
+    shortens = sp.Or(flag("seeks_length"), sp.And(_is_at(_SHORTENING), sp.Not(flag("is_shortest"))))
+    going = sp.And(_is_at(_SETTLING), sp.Not(flag("is_settled")))
+    settles = sp.Or(sp.And(flag("begins"), sp.Not(flag("seeks_length"))), flag("is_shortest"), going)
+    stage = Select(meets, _MEETING, Select(shortens, _SHORTENING, Select(settles, _SETTLING, _LOOKING)))
+    yield Let(count("next_stage"), stage)
+    turns_back = sp.And(flag("way_ends"), sp.Not(ONWARD), sp.Gt(DIRECTION, 0))
+    yield Let(flag("turns_back"), turns_back)
+    is_found = sp.And(ONWARD, sp.Lt(real("nearest_now"), _FAR), sp.Eq(count("next_stage"), _LOOKING))
+    is_done = sp.And(flag("way_ends"), sp.Not(flag("turns_back")))
+    yield Let(flag("is_over"), sp.Or(is_done, is_found, sp.Le(_PASSES_LEFT, 0)))
+
+
+def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
+    """The state in the next pass."""
+    looks, passes_by = _is_at(_LOOKING), sp.Gt(_WIDTH, 0)
+    wider = Select(passes_by, 2 * _WIDTH, Select(IS_ROUNDING, FIRST, _ZERO))
+    width = Select(flag("part_is_done"), _ZERO, Select(sp.And(looks, sp.Not(flag("part_ends"))), wider, _WIDTH))
+    steps = sp.And(looks, sp.Not(passes_by), sp.Not(IS_ROUNDING))
+    place = Select(flag("part_is_done"), _PLACE + _WIDTH, Select(steps, _PLACE + SAFE, _PLACE))
+    begins = sp.Or(flag("begins"), flag("is_shortest"))
+    first, onward = trials_begun(real("place_of_start")), trials_go_on(_is_at(_SHORTENING))
+    step = Select(sp.Gt(ERROR, STALLED * _BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
+    is_new = sp.Or(flag("is_near"), flag("mirrors"))
+    found: dict[sp.Symbol, sp.Expr] = {
+        _STAGE: count("next_stage"),
+        DIRECTION: Select(flag("turns_back"), sp.Integer(-1), DIRECTION),
+        _PLACE: Select(flag("turns_back"), _ZERO, place),
+        _WIDTH: Select(flag("turns_back"), _ZERO, width),
+        SIDE: Select(flag("part_ends"), _ONE, Select(flag("side_ends"), sp.Integer(-1), SIDE)),
+        _NUMBER: count("number_now"),
+        _SHORTEST: real("shortest_now"),
+        _ASIDE: real("aside_now"),
+        _BEFORE: Select(is_new, _FAR, ERROR),
+        _LEFT: Select(is_new, sp.Integer(PASSES), _LEFT - step),
+        _MIRRORED: sp.And(sp.Not(flag("is_near")), sp.Or(flag("mirrors"), _MIRRORED)),
+        _NEAREST: real("nearest_now"),
+        _PASSES_LEFT: _PASSES_LEFT - 1,
+    }
+    found |= {n: Select(begins, first[n], value) for n, value in onward.items()}
+    for j in joints:
+        mirrored = 2 * _begun(j) - j
+        found[j] = Select(flag("is_near"), begun(j), Select(flag("mirrors"), mirrored, moved_to(j)))
+        found[_begun(j)] = Select(flag("is_near"), begun(j), _begun(j))
+        found[_kept(j)] = _kept_now(j)
+    return found
+
+
+def _begun(joint: sp.Symbol) -> sp.Symbol:
+    return real(f"met_from_{joint.name}")

@@ -31,11 +31,11 @@ from tests.algebra.product import Product, product_of
 
 BEGIN = sp.Float("0.1")
 """The first angle (radians): a round one may be one at which much vanishes."""
-NOISE = real("noise")
-"""Where the wave is smaller, it is rounding."""
+NOISE, FIFTH = real("noise"), real("bound_of_fifth")
+"""Where the wave is smaller, it is rounding; a bound of its fifth derivative, over 5!."""
 _BEYOND = 2
 """The number of waves beyond the degree."""
-_MORE, _ROUNDING = 32, sp.Float("1e-14")
+_MORE, _ROUNDING = 1000, sp.Float("1e-14")
 """The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
 _MACHINES, _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 6, 96, 4, 16, 1e-10
 
@@ -85,11 +85,17 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     )
     own = names_of(degree)
     beyond = [n for n in names if n not in own]
-    outputs = [*(Output(n.name, n) for n in own), Output(NOISE.name, NOISE)]
-    program = normalise("compute_wave", (loop, *_noise(own, beyond)), outputs)
+    fifth = Let(FIFTH, sp.Add(*[_fifth(k, degree) * sp.Abs(n) for k, n in enumerate(own) if k]))
+    outputs = [Output(n.name, n) for n in (*own, NOISE, FIFTH)]
+    program = normalise("compute_wave", (loop, *_noise(own, beyond), fifth), outputs)
     return replace(
         program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
     ), degree
+
+
+def _fifth(place: int, degree: int) -> sp.Expr:
+    """The fifth derivative, over 5!, of the wave of a coefficient, by its place among them."""
+    return sp.Float((place if place <= degree else place - degree) ** 5 / 120)
 
 
 def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:

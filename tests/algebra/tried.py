@@ -1,0 +1,127 @@
+"""The trials in a part of the circle: where a length is shortest, and where the residual of a branch vanishes.
+
+Both are steps of one loop, each with one trial: `Shortest` takes some points of the part and then secants of the
+growth, half the slope of the squared length; `Newton` goes on as long as the residual becomes smaller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.passes import normalise
+from derive.ir.primitives import Root, Select, ToReal
+from derive.ir.program import Let, Output, Program
+from derive.ir.symbols import TRIED, count, flag, real
+from derive.kinematics.scan.programs import _roots_named as roots_named
+from derive.kinematics.scan.slopes import slope_name, with_slopes
+from tests.algebra.closure import Trial
+from tests.algebra.starts import inside
+
+AT, TRIALS, BEST = real("at"), count("trials"), real("best")
+"""How far ahead of the start of the search the next trial is; the number of trials; the best place so far."""
+BEST_NOW, LEAST_NOW = real("best_now"), real("least_now")
+REMAINDER, RATE, ROOM, GROWTH = map(real, ("remainder", "rate", "room_of_trial", "growth"))
+WAY_NOW, NEWTON_NEXT, BEND_NOW, SHORTEST_NEXT = map(real, ("way_now", "newton_place", "bend_now", "shortening_place"))
+_LEAST, _WAY = real("least"), real("way")
+_LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
+_ASIDE = sp.Float("1.7")
+"""The tangent of 60 degrees."""
+_GRID, _SECANTS, _NEWTONS = 5, 6, 5
+_STILL = sp.Float("1e-10")
+"""A step of this length (radians) ends the method: the steps on the closure follow."""
+_ZERO, _ONE, _MOST = sp.Integer(0), sp.Integer(1), sp.Float("1e30")
+
+
+def lengths_of(trial: Program) -> int:
+    """The number of lengths that a trial tells."""
+    return (len(trial.outputs) - 3) // 2
+
+
+def try_program(trial: Trial) -> Program:
+    """The program of a trial: the residual with its slope, and lengths that turn angles with half the slopes of their
+    squares.
+    """
+    value = real("value")
+    left = Let(value, trial.value, "residual of the closure")
+    differentiated = with_slopes([*roots_named(trial.statements), left], TRIED)
+    bound = {s.name for s in differentiated if isinstance(s, Let)}
+    slope = {n: slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, *trial.lengths)}
+    outputs = [Output(REMAINDER.name, value), Output(RATE.name, slope[value]), Output(ROOM.name, trial.room)]
+    for k, name in enumerate(trial.lengths, 1):
+        outputs += [Output(f"length_{k}", name), Output(f"growth_{k}", name * slope[name])]
+    program = normalise("try_joint", differentiated, outputs)
+    return replace(
+        program, summary="The residual of the closure at a trial, with its slope, and lengths that turn angles"
+    )
+
+
+def trials_begun(place: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
+    """The state of the trials at their first one."""
+    zeros = dict.fromkeys((TRIALS, _WAY, _BEFORE, _BEND), _ZERO)
+    return {AT: place, BEST: place, _LAST: place, _LEAST: _MOST, **zeros}
+
+
+def better(is_shortest: sp.Basic, length: sp.Expr) -> Iterator[Let]:
+    """Whether a trial is the best so far: where the length is shortest, or where the least remains."""
+    size, is_less = real("size"), flag("is_less")
+    yield Let(size, Select(is_shortest, length, sp.Abs(REMAINDER)))
+    yield Let(is_less, sp.Lt(size, _LEAST))
+    yield Let(BEST_NOW, Select(is_less, AT, BEST))
+    yield Let(LEAST_NOW, Select(is_less, size, _LEAST))
+
+
+def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr) -> Iterator[Let]:
+    """The step of Newton's method; one that does not lower the residual is shortened."""
+    is_steep = sp.Gt(sp.Abs(RATE), 0)
+    newton = direction * REMAINDER / Select(is_steep, RATE, _MOST)
+    yield Let(WAY_NOW, Select(flag("is_less"), newton, _WAY / 4))
+    yield Let(NEWTON_NEXT, inside(BEST_NOW - WAY_NOW, ends))
+
+
+def newton_is_done(is_narrow: sp.Basic) -> sp.Basic:
+    """Whether Newton's method ends: there is no step in a narrow part."""
+    return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL), is_narrow)
+
+
+def shortest_step(ends: tuple[sp.Expr, sp.Expr], growth: sp.Expr) -> Iterator[Let]:
+    """The next trial towards the shortest length: points of the part, the best of them, one beside it, secants."""
+    low, high = ends
+    gap, way, bend, spread = real("gap"), real("way_of_trial"), BEND_NOW, real("spread")
+    yield Let(GROWTH, growth)
+    yield Let(gap, GROWTH - _BEFORE)
+    yield Let(way, AT - _LAST)
+    is_bent = sp.And(sp.Gt(TRIALS, _GRID), sp.Gt(gap * way, 0))
+    yield Let(bend, Select(is_bent, gap / Select(is_bent, way, _ONE), _BEND))
+    yield Let(spread, (high - low) / (_GRID - 1))
+    aside = Select(sp.Gt(BEST_NOW + spread / 4, high), BEST_NOW - spread / 4, BEST_NOW + spread / 4)
+    secant = inside(AT - GROWTH / Select(sp.Gt(bend, 0), bend, _ONE), ends)
+    behind = Select(sp.Lt(TRIALS, _GRID), BEST_NOW, Select(sp.Eq(TRIALS, _GRID), aside, secant))
+    yield Let(SHORTEST_NEXT, Select(sp.Lt(TRIALS, _GRID - 1), low + (ToReal(TRIALS) + 1) * spread, behind))
+
+
+def shortest_is_done() -> sp.Basic:
+    """Whether the place of the shortest length is found."""
+    return sp.Ge(TRIALS, _GRID + _SECANTS)
+
+
+def turned_by_a_sixth() -> sp.Expr:
+    """How far from the place of the shortest length its angle has turned by 60 degrees."""
+    is_bent = sp.Gt(BEND_NOW, 0)
+    return Select(is_bent, _ASIDE * LEAST_NOW / Root(Select(is_bent, BEND_NOW, _ONE)), _ZERO)
+
+
+def trials_go_on(is_shortest: sp.Basic) -> dict[sp.Symbol, sp.Expr]:
+    """The state behind a trial."""
+    return {
+        AT: Select(is_shortest, SHORTEST_NEXT, NEWTON_NEXT),
+        TRIALS: TRIALS + 1,
+        BEST: BEST_NOW,
+        _LEAST: LEAST_NOW,
+        _WAY: WAY_NOW,
+        _LAST: AT,
+        _BEFORE: GROWTH,
+        _BEND: BEND_NOW,
+    }
