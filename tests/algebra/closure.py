@@ -30,6 +30,7 @@ from derive.kinematics.scan.programs import (
     GOAL,
     _agreement,
     _errors,
+    _named_entries,
     solved_value,
     with_goal,
 )
@@ -161,10 +162,8 @@ def _way(joint: sp.Symbol, step: sp.Symbol, lengths: Container[sp.Symbol]) -> sp
 def _named_jacobian(mechanism: Mechanism) -> tuple[list[Statement], sp.Matrix]:
     """The statements that compute the Jacobian, and the Jacobian by the names of its entries."""
     lets, entries = solved_entries(mechanism)
-    scaled, width = list(scaled_entries(mechanism, entries)), len(mechanism.solved_joints)
-    names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(scaled)]
-    rates = [Let(name, value) for name, value in zip(names, scaled, strict=True) if not value.is_number]
-    return [*lets, *rates], sp.Matrix(len(scaled) // width, width, names)
+    rates, jacobian = _named_entries(list(scaled_entries(mechanism, entries)), len(mechanism.solved_joints))
+    return [*lets, *rates], jacobian
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:

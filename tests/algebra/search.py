@@ -45,8 +45,6 @@ from tests.algebra.tried import (
 )
 from tests.algebra.wave import wave_program
 
-FIND_ROOT = "find_root"
-"""The name of the program."""
 ONWARD = flag("onward")
 """Whether the next root ahead of the start is wanted, not the nearest one."""
 AWAY = real("away")
@@ -57,7 +55,7 @@ symmetric about its start, roots are as far to both sides, and rounding would ch
 The next root ahead is further away than this.
 """
 MOST_PASSES = 6000
-"""The passes of the search, at most: about 60 at a random pose, up to 3,100 next to a folded elbow, where many starts
+"""The passes of the search, at most: 30 to 110 at a random pose, up to 3,100 next to a folded elbow, where many starts
 of a part lead to other branches.
 """
 _LOOKING, _SHORTENING, _SETTLING, _MEETING = map(sp.Integer, range(4))
@@ -69,11 +67,11 @@ _NEAREST, _PASSES_LEFT = real("nearest"), count("passes_left")
 FIRST, LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
 """The width of a part to begin with, and of one that is not widened further: it is followed by another."""
 _NEAR = sp.Float("1e-3")
-"""The closure is met only from where the residual of the branch is at most this."""
+"""In a narrow part steps on the closure begin only where the residual of the branch is at most this."""
 _ROOM = sp.Float("1e-6")
-"""Where a step has this room, its two roots are too far apart to be on both branches."""
+"""Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
 _MOVED = sp.Float("1e-8")
-"""How far (radians, lengths of the machine) joints move that lead to another branch."""
+"""Joints are mirrored if the steps on the closure moved them by more than this (radians and lengths, added)."""
 _TURN = 2 * sp.pi
 _ZERO, _ONE, _FAR = sp.Integer(0), sp.Integer(1), sp.Integer(9)
 
@@ -141,7 +139,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         Output(AWAY.name, Select(sp.Lt(nearest, _FAR), nearest, _ZERO)),
         *(Output(f"found_{j.symbol.name}", found[j.symbol]) for j in mechanism.joints),
     ]
-    program = normalise(FIND_ROOT, (wave, loop), outputs)
+    program = normalise("find_root", (wave, loop), outputs)
     return replace(program, summary="The joints at the root nearest to the start, or next ahead of it")
 
 
@@ -218,13 +216,11 @@ def _met(
     yield Let(flag("meets_pose"), sp.And(flag("steps_end"), sp.Le(ERROR, CONVERGED)))
     yield _call(steps.fits, arguments, here, flag("meets_pose"))
     ahead = searched - START - AHEAD
-    yield Let(real("distance_ahead"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
-    within = sp.Or(
-        sp.Not(ONWARD), sp.And(sp.Gt(real("distance_ahead"), AHEAD), sp.Lt(real("distance_ahead"), _TURN - AHEAD))
-    )
+    yield Let(real("distance"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
+    within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("distance"), AHEAD), sp.Lt(real("distance"), _TURN - AHEAD)))
     fits = sp.And(flag("meets_pose"), flag(FITS))
-    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance_ahead"), _NEAREST)))
-    yield Let(real("nearest_now"), Select(flag("is_better"), real("distance_ahead"), _NEAREST))
+    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("distance"), _NEAREST)))
+    yield Let(real("nearest_now"), Select(flag("is_better"), real("distance"), _NEAREST))
     yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
     has_moved = sp.Gt(real("moved"), _MOVED)
     yield from (Let(_kept_now(j), Select(flag("is_better"), j, _kept(j))) for j in joints)
