@@ -53,6 +53,18 @@ def parts_of(kinematics: Kinematics) -> Parts:
     return Parts(with_choices(program, kinematics.parameters), names, shape)
 
 
+def lines_of(shape: Mapping[str, Any]) -> tuple[tuple[int, int, str], ...]:
+    """The lines of a loop: the places of their ends, and the axes that drive them. They are arms (a point for one that
+    bars draw), ways of carriages, rods, and the plate as a star about the tool, whose place is -1.
+    """
+    cranks = shape["cranks"]
+    arms = [(c["centre"], end if c["isHeld"] else c["centre"], c["joint"]) for c in cranks for end in c["ends"]]
+    ways = [(rail["origin"], rail["at"], rail["joint"]) for rail in shape["rails"]]
+    rods = [(rod["start"], rod["end"], " ".join(rod["joints"])) for rod in shape["rods"]]
+    carried = " ".join(part["joint"] for part in shape["carried"])
+    return (*arms, *ways, *rods, *((place, -1, carried) for place in shape["plate"]))
+
+
 @dataclass
 class _Values:
     """Values, each with its place."""

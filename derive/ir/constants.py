@@ -32,6 +32,8 @@ EXACT_ROTATION = sp.Float("1e-12")
 SURE_ROTATION = sp.Float("1e-13")
 """A matrix that misses x x = y y = 1, x y = 0 and z = x × y by no more than this is nearer to a rotation than
 `EXACT_ROTATION`."""
+SAME_ROTATION = sp.Float("1e-6")
+"""A commanded rotation is reached where the angle to it is at most this many radians: that is rounding."""
 LEAST = sp.Float("1e-12")
 """A length or a ratio that may not be zero is refused at this size or less, so that products of such numbers, and
 their reciprocals, stay finite."""

@@ -8,6 +8,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
 from tests.text import comparisons
 from tests.text.comparisons import Comparison
+from tests.text.limits import limited
 from tests.text.loops import answers
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
@@ -21,7 +22,8 @@ and a folder, of their own."""
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
     """Its machines."""
     if mechanism.drives:
-        return tuple(map(serial_pair, driven_machines_of(mechanism)))
+        machines = driven_machines_of(mechanism)
+        return tuple(map(serial_pair, (*machines, limited(machines[-1], "limited"))))
     return loops_of(mechanism) if mechanism.rods else serial_pairs_of(mechanism)
 
 

@@ -1,7 +1,5 @@
 """The arguments of methods: poses of a machine, and commands that may be far from them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import product

@@ -16,8 +16,8 @@ import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closures.commanded import closure_at
-from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.conditions import with_conditions
+from derive.equations.machine_checks import with_checks
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
@@ -120,10 +120,7 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     chosen = replace(mechanism, branches=(*others, *last), search=Search(found.joint))
     named = with_named_steps(chosen, trial, forward)
     noted = replace(named, notes=(*mechanism.notes, _note(named, found)))
-    lets = fixed_lets(mechanism)
-    checks = tuple(check.constraint(lets) for check in dict.fromkeys(trial.checks))
-    held = replace(noted, constraints=(*noted.constraints, *checks))
-    return with_conditions(held, trial.derivation.conditions)
+    return with_conditions(with_checks(noted, trial.checks), trial.derivation.conditions)
 
 
 def _note(mechanism: Mechanism, found: _Candidate) -> str:

@@ -156,6 +156,8 @@ typedef struct {
   softkin_status (*singularity)(const void *machine, const double *axes, double *margins,
       softkin_refusal *why);
   softkin_status (*jacobian)(const void *machine, const double *axes, double *rows, softkin_refusal *why);
+  softkin_status (*bias)(const void *machine, const double *axes, const double *speeds, double *accelerations,
+      softkin_refusal *why);
   softkin_status (*quantities)(const void *machine, const double *axes, double *values, softkin_refusal *why);
   softkin_status (*search_given)(const void *machine, const softkin_frame *frame, const int8_t *signs,
       const int8_t *turns, const double *reference, double *given, softkin_refusal *why);
@@ -260,6 +262,27 @@ softkin_status softkin_branches(const softkin_mechanism *kind, const void *machi
 /** The Jacobian by rows, per radian: `row_count` times `axis_count`, rows as in `rows`. */
 softkin_status softkin_jacobian(const softkin_mechanism *kind, const void *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/**
+ * The velocities of the axes for a twist of the frame, both per radian: the inverse of the Jacobian. An axis
+ * that is held does not move.
+ *
+ * @param twist `row_count` numbers, rows as in `rows`; velocities: `axis_count`
+ * @return SOFTKIN_OK, SOFTKIN_IMPOSSIBLE at a singular pose, or as `softkin_jacobian`
+ */
+softkin_status softkin_axis_velocities(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/**
+ * The accelerations of the axes that give the frame an acceleration, per radian.
+ *
+ * @param velocities those of the axes, as `softkin_axis_velocities` finds them
+ * @param twist_rate the rate of the twist; zeros on a straight line at constant speed
+ * @return as `softkin_axis_velocities`
+ */
+softkin_status softkin_axis_accelerations(const softkin_mechanism *kind, const void *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
 
 /**
  * The margins, each zero at its singularity.

@@ -1,7 +1,5 @@
 """One machine goes through every stage and into every language, as `make generate` takes it."""
 
-from __future__ import annotations
-
 from derive.command.catalogue import OUTPUT
 from derive.pipeline import LANGUAGES, WRITTEN, derive_one, files_of, languages
 from tests.mechanisms import named
