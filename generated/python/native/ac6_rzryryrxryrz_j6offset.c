@@ -479,17 +479,17 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       *(sum_in_rounding_0 + sum_in_rounding_0_2 + sum_in_rounding_0_3 + sum_in_rounding_0_4
       + sum_in_rounding_0_5 + sum_in_rounding_0_6 + sum_in_rounding_0_7 + sum_in_rounding_0_8
       + fabs(wave_cos_0));
-  const double size_of_wave_cos_9_times_32 = 32.0*fabs(wave_cos_9);
-  const double rounding_1 = size_of_wave_cos_9_times_32 > rounding_0 ? size_of_wave_cos_9_times_32
+  const double size_of_wave_cos_9_times_1000 = 1000.0*fabs(wave_cos_9);
+  const double rounding_1 = size_of_wave_cos_9_times_1000 > rounding_0 ? size_of_wave_cos_9_times_1000
       : rounding_0;
-  const double size_of_wave_cos_10_times_32 = 32.0*fabs(wave_cos_10);
-  const double rounding_2 = size_of_wave_cos_10_times_32 > rounding_1 ? size_of_wave_cos_10_times_32
+  const double size_of_wave_cos_10_times_1000 = 1000.0*fabs(wave_cos_10);
+  const double rounding_2 = size_of_wave_cos_10_times_1000 > rounding_1 ? size_of_wave_cos_10_times_1000
       : rounding_1;
-  const double size_of_wave_sin_9_times_32 = 32.0*fabs(wave_sin_9);
-  const double rounding_3 = size_of_wave_sin_9_times_32 > rounding_2 ? size_of_wave_sin_9_times_32
+  const double size_of_wave_sin_9_times_1000 = 1000.0*fabs(wave_sin_9);
+  const double rounding_3 = size_of_wave_sin_9_times_1000 > rounding_2 ? size_of_wave_sin_9_times_1000
       : rounding_2;
-  const double size_of_wave_sin_10_times_32 = 32.0*fabs(wave_sin_10);
-  const double rounding_4 = size_of_wave_sin_10_times_32 > rounding_3 ? size_of_wave_sin_10_times_32
+  const double size_of_wave_sin_10_times_1000 = 1000.0*fabs(wave_sin_10);
+  const double rounding_4 = size_of_wave_sin_10_times_1000 > rounding_3 ? size_of_wave_sin_10_times_1000
       : rounding_3;
   const double sum_in_bound_of_fifth = 2.025*sum_in_rounding_0_2 + 64.8*sum_in_rounding_0_3
       + 0.008333333333333333*sum_in_rounding_0_4 + 0.26666666666666666*sum_in_rounding_0_5
@@ -1307,7 +1307,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   int steps_left = 0;
   bool was_mirrored = false;
   double nearest = 9.0;
-  int passes_left = 2000;
+  int passes_left = 6000;
   double at = 0.0;
   int trials = 0;
   double best = 0.0;
@@ -1337,20 +1337,20 @@ static softkin_status find_root(const void *machine, const double *given, double
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
       begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
-      moved_q5, moved_q6, start_minus_q6, distance, nearest_now, moved, place_next, width_next, shortest_now,
-      growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
+      moved_q5, moved_q6, start_minus_q6, way_ahead, nearest_now, moved, place_next, width_next,
+      shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
       spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
       value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
       place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
-      q1_next, met_from_q1_next, kept_q1_next, q2_next, met_from_q2_next, kept_q2_next, q3_next,
-      met_from_q3_next, kept_q3_next, q4_next, met_from_q4_next, kept_q4_next, q5_next, met_from_q5_next,
-      kept_q5_next, q6_next, met_from_q6_next, kept_q6_next;
+      q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next, kept_now_q2, q3_next,
+      met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next, met_from_q5_next,
+      kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
   bool is_rounding, is_less, is_settled, is_near, steps_end, meets_pose, fits, way_ends, is_better,
       is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
       seeks_length, turns_back, is_over, was_mirrored_next;
-  for (int pass = 0; pass < 2001; pass += 1) {
+  for (int pass = 0; pass < 6001; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
     if (stage == 0) {
@@ -1390,7 +1390,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     best_now_minus_way_now = best_now - way_now;
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
-    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 8) || (fabs(at - newton_place) <= 1e-10));
+    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 5) || (fabs(at - newton_place) <= 1e-10));
     is_near = is_settled && ((width > 1e-6)
         || ((least_now <= 0.001) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
@@ -1442,21 +1442,21 @@ static softkin_status find_root(const void *machine, const double *given, double
         && (place_ >= (onward ? sum_in_way_ends
         : (nearest < 180.0*SOFTKIN_DEGREE ? 2e-7 + nearest : 180.0*SOFTKIN_DEGREE)));
     start_minus_q6 = start_ - q6;
-    distance = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
         + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
         cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
         : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
-    is_better = fits && meets_pose && (distance < nearest)
-        && ((!onward) || ((distance > 1e-7) && (distance < sum_in_way_ends)));
-    nearest_now = is_better ? distance : nearest;
-    is_shortest = (stage == 1) && (trials >= 21);
+    is_better = fits && meets_pose && (way_ahead < nearest)
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends)));
+    nearest_now = is_better ? way_ahead : nearest;
+    is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
         + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
     mirrors = meets_pose && (!fits) && (!was_mirrored) && (moved > 1e-8);
     part_ends = (stage == 0) && (width > 0.0) && ((!is_rounding) || (width >= 0.5));
     start_ends = (is_settled && (!is_near)) || (steps_end && (!mirrors));
     number_of_start_plus_one = 1 + number_of_start;
-    next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.0001 ? 3 : (width <= 0.01 ? 5 : 9)))
+    next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.001 ? 3 : (width <= 0.1 ? 5 : 9)))
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 15 ? number_of_start_plus_one : 0));
@@ -1485,24 +1485,24 @@ static softkin_status find_root(const void *machine, const double *given, double
     growth = (number_of_start > 12 ? growth_2 : growth_1)*real_of_direction;
     gap = growth - growth_before;
     way_of_trial = at - last;
-    bend_now = (trials > 9) && (gap*way_of_trial > 0.0)
-        ? gap/((trials > 9) && (gap*way_of_trial > 0.0) ? way_of_trial : 1.0) : bend;
+    bend_now = (trials > 5) && (gap*way_of_trial > 0.0)
+        ? gap/((trials > 5) && (gap*way_of_trial > 0.0) ? way_of_trial : 1.0) : bend;
     bend_now_2 = bend_now > 0.0 ? bend_now : 1.0;
     aside_now = is_shortest ? (bend_now > 0.0 ? 1.7*least_now/softkin_root(bend_now_2) : 0.0) : aside;
     error_before_next = is_near || mirrors ? 9.0 : error;
     steps_left_next = is_near || mirrors ? 64 : steps_left + (error > 0.999*error_before ? -8 : -1);
     was_mirrored_next = (!is_near) && (mirrors || was_mirrored);
     passes_left_next = passes_left - 1;
-    spread = 0.125*width;
+    spread = 0.25*width;
     spread_times_1_by_4 = 0.25*spread;
     best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4;
     at_minus_growth_by_bend_now = at - growth/bend_now_2;
-    value_in_shortening_place = trials < 9 ? best_now
-        : (trials == 9 ? (best_now_plus_spread_times_1_by_4 > place_plus_width ? best_now
+    value_in_shortening_place = trials < 5 ? best_now
+        : (trials == 5 ? (best_now_plus_spread_times_1_by_4 > place_plus_width ? best_now
         - spread_times_1_by_4 : best_now_plus_spread_times_1_by_4)
         : (at_minus_growth_by_bend_now < place_ ? place_
         : (at_minus_growth_by_bend_now > place_plus_width ? place_plus_width : at_minus_growth_by_bend_now)));
-    shortening_place = trials < 8 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
+    shortening_place = trials < 4 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
     sum_in_place_of_start = place_
         + (number_now == 9 ? 0.875
         : (number_now == 8 ? 0.625
@@ -1526,22 +1526,22 @@ static softkin_status find_root(const void *machine, const double *given, double
     bend_next = begins || is_shortest ? 0.0 : bend_now;
     q1_next = is_near ? begun_q1 : (mirrors ? 2.0*met_from_q1 - q1 : moved_q1);
     met_from_q1_next = is_near ? begun_q1 : met_from_q1;
-    kept_q1_next = is_better ? q1 : kept_q1;
+    kept_now_q1 = is_better ? q1 : kept_q1;
     q2_next = is_near ? begun_q2 : (mirrors ? 2.0*met_from_q2 - q2 : moved_q2);
     met_from_q2_next = is_near ? begun_q2 : met_from_q2;
-    kept_q2_next = is_better ? q2 : kept_q2;
+    kept_now_q2 = is_better ? q2 : kept_q2;
     q3_next = is_near ? begun_q3 : (mirrors ? 2.0*met_from_q3 - q3 : moved_q3);
     met_from_q3_next = is_near ? begun_q3 : met_from_q3;
-    kept_q3_next = is_better ? q3 : kept_q3;
+    kept_now_q3 = is_better ? q3 : kept_q3;
     q4_next = is_near ? begun_q4 : (mirrors ? 2.0*met_from_q4 - q4 : moved_q4);
     met_from_q4_next = is_near ? begun_q4 : met_from_q4;
-    kept_q4_next = is_better ? q4 : kept_q4;
+    kept_now_q4 = is_better ? q4 : kept_q4;
     q5_next = is_near ? begun_q5 : (mirrors ? 2.0*met_from_q5 - q5 : moved_q5);
     met_from_q5_next = is_near ? begun_q5 : met_from_q5;
-    kept_q5_next = is_better ? q5 : kept_q5;
+    kept_now_q5 = is_better ? q5 : kept_q5;
     q6_next = is_near ? begun_q6 : (mirrors ? 2.0*met_from_q6 - q6 : moved_q6);
     met_from_q6_next = is_near ? begun_q6 : met_from_q6;
-    kept_q6_next = is_better ? q6 : kept_q6;
+    kept_now_q6 = is_better ? q6 : kept_q6;
     if (is_over || (!looked_for)) {
       break;
     }
@@ -1568,31 +1568,31 @@ static softkin_status find_root(const void *machine, const double *given, double
     bend = bend_next;
     q1 = q1_next;
     met_from_q1 = met_from_q1_next;
-    kept_q1 = kept_q1_next;
+    kept_q1 = kept_now_q1;
     q2 = q2_next;
     met_from_q2 = met_from_q2_next;
-    kept_q2 = kept_q2_next;
+    kept_q2 = kept_now_q2;
     q3 = q3_next;
     met_from_q3 = met_from_q3_next;
-    kept_q3 = kept_q3_next;
+    kept_q3 = kept_now_q3;
     q4 = q4_next;
     met_from_q4 = met_from_q4_next;
-    kept_q4 = kept_q4_next;
+    kept_q4 = kept_now_q4;
     q5 = q5_next;
     met_from_q5 = met_from_q5_next;
-    kept_q5 = kept_q5_next;
+    kept_q5 = kept_now_q5;
     q6 = q6_next;
     met_from_q6 = met_from_q6_next;
-    kept_q6 = kept_q6_next;
+    kept_q6 = kept_now_q6;
   }
   found[0] = nearest_now < 9.0;
   found[1] = (nearest_now < 9.0 ? nearest_now : 0.0);
-  found[2] = kept_q1;
-  found[3] = kept_q2;
-  found[4] = kept_q3;
-  found[5] = kept_q4;
-  found[6] = kept_q5;
-  found[7] = kept_q6;
+  found[2] = kept_now_q1;
+  found[3] = kept_now_q2;
+  found[4] = kept_now_q3;
+  found[5] = kept_now_q4;
+  found[6] = kept_now_q5;
+  found[7] = kept_now_q6;
   return SOFTKIN_OK;
 }
 

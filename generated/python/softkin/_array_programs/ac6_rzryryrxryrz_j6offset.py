@@ -462,14 +462,14 @@ class ArrayPrograms(Programs):
             + sum_in_rounding_0_8
             + absolute(wave_cos_0)
         )
-        size_of_wave_cos_9_times_32 = 32.0 * absolute(wave_cos_9)
-        rounding_1 = select(size_of_wave_cos_9_times_32 > rounding_0, size_of_wave_cos_9_times_32, rounding_0)
-        size_of_wave_cos_10_times_32 = 32.0 * absolute(wave_cos_10)
-        rounding_2 = select(size_of_wave_cos_10_times_32 > rounding_1, size_of_wave_cos_10_times_32, rounding_1)
-        size_of_wave_sin_9_times_32 = 32.0 * absolute(wave_sin_9)
-        rounding_3 = select(size_of_wave_sin_9_times_32 > rounding_2, size_of_wave_sin_9_times_32, rounding_2)
-        size_of_wave_sin_10_times_32 = 32.0 * absolute(wave_sin_10)
-        rounding_4 = select(size_of_wave_sin_10_times_32 > rounding_3, size_of_wave_sin_10_times_32, rounding_3)
+        size_of_wave_cos_9_times_1000 = 1000.0 * absolute(wave_cos_9)
+        rounding_1 = select(size_of_wave_cos_9_times_1000 > rounding_0, size_of_wave_cos_9_times_1000, rounding_0)
+        size_of_wave_cos_10_times_1000 = 1000.0 * absolute(wave_cos_10)
+        rounding_2 = select(size_of_wave_cos_10_times_1000 > rounding_1, size_of_wave_cos_10_times_1000, rounding_1)
+        size_of_wave_sin_9_times_1000 = 1000.0 * absolute(wave_sin_9)
+        rounding_3 = select(size_of_wave_sin_9_times_1000 > rounding_2, size_of_wave_sin_9_times_1000, rounding_2)
+        size_of_wave_sin_10_times_1000 = 1000.0 * absolute(wave_sin_10)
+        rounding_4 = select(size_of_wave_sin_10_times_1000 > rounding_3, size_of_wave_sin_10_times_1000, rounding_3)
         sum_in_bound_of_fifth = (
             2.025 * sum_in_rounding_0_2
             + 64.8 * sum_in_rounding_0_3
@@ -1562,7 +1562,7 @@ class ArrayPrograms(Programs):
             0,
             False,
             9.0,
-            2000,
+            6000,
             0.0,
             0,
             0.0,
@@ -1590,7 +1590,7 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
         )
-        for _ in range(2001):
+        for _ in range(6001):
             place_plus_width = place + width
             found = run_where(
                 stage == 0,
@@ -1664,7 +1664,7 @@ class ArrayPrograms(Programs):
                 place,
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
-            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 8) | (absolute(at - newton_place) <= 1e-10))
+            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 5) | (absolute(at - newton_place) <= 1e-10))
             is_near = is_settled & ((width > 1e-6) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
             found = run_where(
                 is_near,
@@ -1743,7 +1743,7 @@ class ArrayPrograms(Programs):
                 )
             )
             start_minus_q6 = start - q6
-            distance = select(
+            way_ahead = select(
                 onward,
                 1e-7
                 + 180.0 * DEGREE
@@ -1753,11 +1753,11 @@ class ArrayPrograms(Programs):
             is_better = (
                 fits
                 & meets_pose
-                & (distance < nearest)
-                & ((opposite(onward)) | ((distance > 1e-7) & (distance < sum_in_way_ends)))
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
             )
-            nearest_now = select(is_better, distance, nearest)
-            is_shortest = (stage == 1) & (trials >= 21)
+            nearest_now = select(is_better, way_ahead, nearest)
+            is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
                 + absolute(met_from_q2 - q2)
@@ -1771,7 +1771,7 @@ class ArrayPrograms(Programs):
             start_ends = (is_settled & (opposite(is_near))) | (steps_end & (opposite(mirrors)))
             number_of_start_plus_one = 1 + number_of_start
             next_number = select(
-                number_of_start < select(width <= 1e-9, 1, select(width <= 0.0001, 3, select(width <= 0.01, 5, 9))),
+                number_of_start < select(width <= 1e-9, 1, select(width <= 0.001, 3, select(width <= 0.1, 5, 9))),
                 number_of_start_plus_one,
                 select(
                     number_of_start <= 9,
@@ -1834,8 +1834,8 @@ class ArrayPrograms(Programs):
             gap = growth - growth_before
             way_of_trial = at - last
             bend_now = select(
-                (trials > 9) & (gap * way_of_trial > 0.0),
-                gap / select((trials > 9) & (gap * way_of_trial > 0.0), way_of_trial, 1.0),
+                (trials > 5) & (gap * way_of_trial > 0.0),
+                gap / select((trials > 5) & (gap * way_of_trial > 0.0), way_of_trial, 1.0),
                 bend,
             )
             bend_now_2 = select(bend_now > 0.0, bend_now, 1.0)
@@ -1844,15 +1844,15 @@ class ArrayPrograms(Programs):
             steps_left_next = select(is_near | mirrors, 64, steps_left + select(error > 0.999 * error_before, -8, -1))
             was_mirrored_next = (opposite(is_near)) & (mirrors | was_mirrored)
             passes_left_next = passes_left - 1
-            spread = 0.125 * width
+            spread = 0.25 * width
             spread_times_1_by_4 = 0.25 * spread
             best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4
             at_minus_growth_by_bend_now = at - growth / bend_now_2
             value_in_shortening_place = select(
-                trials < 9,
+                trials < 5,
                 best_now,
                 select(
-                    trials == 9,
+                    trials == 5,
                     select(
                         best_now_plus_spread_times_1_by_4 > place_plus_width,
                         best_now - spread_times_1_by_4,
@@ -1869,7 +1869,7 @@ class ArrayPrograms(Programs):
                     ),
                 ),
             )
-            shortening_place = select(trials < 8, place + (1.0 + trials) * spread, value_in_shortening_place)
+            shortening_place = select(trials < 4, place + (1.0 + trials) * spread, value_in_shortening_place)
             sum_in_place_of_start = (
                 place
                 + select(
@@ -1927,22 +1927,22 @@ class ArrayPrograms(Programs):
             bend_next = select(begins | is_shortest, 0.0, bend_now)
             q1_next = select(is_near, begun_q1, select(mirrors, 2.0 * met_from_q1 - q1, moved_q1))
             met_from_q1_next = select(is_near, begun_q1, met_from_q1)
-            kept_q1_next = select(is_better, q1, kept_q1)
+            kept_now_q1 = select(is_better, q1, kept_q1)
             q2_next = select(is_near, begun_q2, select(mirrors, 2.0 * met_from_q2 - q2, moved_q2))
             met_from_q2_next = select(is_near, begun_q2, met_from_q2)
-            kept_q2_next = select(is_better, q2, kept_q2)
+            kept_now_q2 = select(is_better, q2, kept_q2)
             q3_next = select(is_near, begun_q3, select(mirrors, 2.0 * met_from_q3 - q3, moved_q3))
             met_from_q3_next = select(is_near, begun_q3, met_from_q3)
-            kept_q3_next = select(is_better, q3, kept_q3)
+            kept_now_q3 = select(is_better, q3, kept_q3)
             q4_next = select(is_near, begun_q4, select(mirrors, 2.0 * met_from_q4 - q4, moved_q4))
             met_from_q4_next = select(is_near, begun_q4, met_from_q4)
-            kept_q4_next = select(is_better, q4, kept_q4)
+            kept_now_q4 = select(is_better, q4, kept_q4)
             q5_next = select(is_near, begun_q5, select(mirrors, 2.0 * met_from_q5 - q5, moved_q5))
             met_from_q5_next = select(is_near, begun_q5, met_from_q5)
-            kept_q5_next = select(is_better, q5, kept_q5)
+            kept_now_q5 = select(is_better, q5, kept_q5)
             q6_next = select(is_near, begun_q6, select(mirrors, 2.0 * met_from_q6 - q6, moved_q6))
             met_from_q6_next = select(is_near, begun_q6, met_from_q6)
-            kept_q6_next = select(is_better, q6, kept_q6)
+            kept_now_q6 = select(is_better, q6, kept_q6)
             done = is_over | (opposite(looked_for))
             if settled(done, status):
                 break
@@ -2053,33 +2053,33 @@ class ArrayPrograms(Programs):
                     bend_next,
                     q1_next,
                     met_from_q1_next,
-                    kept_q1_next,
+                    kept_now_q1,
                     q2_next,
                     met_from_q2_next,
-                    kept_q2_next,
+                    kept_now_q2,
                     q3_next,
                     met_from_q3_next,
-                    kept_q3_next,
+                    kept_now_q3,
                     q4_next,
                     met_from_q4_next,
-                    kept_q4_next,
+                    kept_now_q4,
                     q5_next,
                     met_from_q5_next,
-                    kept_q5_next,
+                    kept_now_q5,
                     q6_next,
                     met_from_q6_next,
-                    kept_q6_next,
+                    kept_now_q6,
                 ),
             )
         return (
             nearest_now < 9.0,
             select(nearest_now < 9.0, nearest_now, 0.0),
-            kept_q1,
-            kept_q2,
-            kept_q3,
-            kept_q4,
-            kept_q5,
-            kept_q6,
+            kept_now_q1,
+            kept_now_q2,
+            kept_now_q3,
+            kept_now_q4,
+            kept_now_q5,
+            kept_now_q6,
         )
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
