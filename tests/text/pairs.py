@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
@@ -19,6 +20,7 @@ POSITION_KINEMATICS = (*MECHANISMS, *DRIVEN, *LOOPS)
 and a folder, of their own."""
 
 
+@cache
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
     """Its machines."""
     if mechanism.drives:

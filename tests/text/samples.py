@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -47,6 +48,7 @@ class Command:
     reference: Reals
 
 
+@cache
 def regular(machine: Machine, count: int = SAMPLES) -> tuple[Sample, ...]:
     """Random samples away from singular poses; where there are limits, checked or not, half of them inside."""
     rng = np.random.default_rng(sum(machine.label.encode()))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from derive.description.mechanism import DescriptionError
-from derive.drawing.parts import Parts, parts_of
+from derive.drawing.parts import Parts, links_of, parts_of
 from derive.emit import interface as of
 from derive.emit.interface import POSITION, ROTATION, Arrays, Entry, Shape
 from derive.emit.python.program import Argument, Method
@@ -104,7 +104,9 @@ def _further(kin: Kinematics) -> Iterator[Method]:
 
 @kept_by_identity(2)
 def drawn_loop(kin: Kinematics) -> Parts | None:
-    """The drawn parts of a closed loop; None if there is no drawing, and for a chain, whose links are drawn."""
+    """What is drawn of a machine with loops; None if there is no drawing, and for a chain without, whose links are."""
+    if kin.mechanism.drives:
+        return links_of(kin)
     try:
         return parts_of(kin) if kin.mechanism.chain is None else None
     except DescriptionError:  # a drawing is no part of the proof

@@ -172,7 +172,7 @@ def _templates() -> Environment:
         held=literal(float(HELD)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
-        smallest=literal(float(1 / SOLVABLE)),
+        smallest=literal(1.0 / float(SOLVABLE)),
         tolerance=literal(TOLERANCE),
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,

@@ -228,10 +228,11 @@ class Constants:
         self.bucket_cylinder_base_x, self.bucket_cylinder_base_z = bucket_cylinder_base_x, bucket_cylinder_base_z
         self.rocker_pivot_x, self.rocker_length, self.rod_length = rocker_pivot_x, rocker_length, rod_length
         self.bucket_ear_x, self.bucket_ear_z, self.offset_a1 = bucket_ear_x, bucket_ear_z, offset_a1
-        self.offset_s2, self.offset_s3, self.offset_s4, self.along_of_b = offset_s2, offset_s3, offset_s4, along_of_b
-        self.across_of_b, self.reach_of_b, self.along_of_c = across_of_b, reach_of_b, along_of_c
-        self.across_of_c, self.reach_of_c, self.along_of_r_2 = across_of_c, reach_of_c, along_of_r_2
-        self.across_of_r_2, self.reach_of_r_2, self.bound_of_cos_c = across_of_r_2, reach_of_r_2, bound_of_cos_c
+        self.offset_s2, self.offset_s3, self.offset_s4 = offset_s2, offset_s3, offset_s4
+        self.machine_scale, self.along_of_b, self.across_of_b = machine_scale, along_of_b, across_of_b
+        self.reach_of_b, self.along_of_c, self.across_of_c = reach_of_b, along_of_c, across_of_c
+        self.reach_of_c, self.along_of_r_2, self.across_of_r_2 = reach_of_c, along_of_r_2, across_of_r_2
+        self.reach_of_r_2, self.bound_of_cos_c = reach_of_r_2, bound_of_cos_c
         self.product_in_level_of_d, self.shared_product = product_in_level_of_d, shared_product
         self.machine_scale_times_rounding, self.shared_product_2 = machine_scale_times_rounding, shared_product_2
         self.shared_product_3, self.product_in_along_of_d = shared_product_3, product_in_along_of_d
@@ -359,6 +360,26 @@ class Excavator(Mechanism):
     BRANCHES = 2
     PERIOD_AXES = (0,)
     LIMIT_KEYS = ("a1", "s2", "s3", "s4")
+    LINES = (
+        (0, 0, "A1"),
+        (0, 1, ""),
+        (1, 2, ""),
+        (2, 2, "S2"),
+        (2, 3, ""),
+        (3, 3, "S3"),
+        (3, 4, ""),
+        (4, 4, "S4"),
+        (4, 5, ""),
+        (2, 6, ""),
+        (7, 6, "S2"),
+        (3, 8, ""),
+        (9, 8, "S3"),
+        (10, 11, ""),
+        (12, 11, "S4"),
+        (10, 11, ""),
+        (4, 13, ""),
+        (11, 13, "S4"),
+    )
     DISTANCE_AXES = (0,)
 
     boom_foot_x: float
@@ -2065,6 +2086,257 @@ class Excavator(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_s2, axis_s3, axis_s4 = axes
+        k = self._constants
+        boom_cylinder_base_x, boom_cylinder_base_z = k.boom_cylinder_base_x, k.boom_cylinder_base_z
+        boom_cylinder_eye_x, boom_cylinder_eye_z = k.boom_cylinder_eye_x, k.boom_cylinder_eye_z
+        boom_foot_x, boom_foot_z, boom_length = k.boom_foot_x, k.boom_foot_z, k.boom_length
+        bucket_cylinder_base_x, bucket_cylinder_base_z = k.bucket_cylinder_base_x, k.bucket_cylinder_base_z
+        bucket_ear_x, bucket_ear_z, bucket_length = k.bucket_ear_x, k.bucket_ear_z, k.bucket_length
+        machine_scale, offset_a1, offset_s2, offset_s3 = k.machine_scale, k.offset_a1, k.offset_s2, k.offset_s3
+        offset_s4, rocker_length, rocker_pivot_x = k.offset_s4, k.rocker_length, k.rocker_pivot_x
+        rod_length, stick_cylinder_base_x = k.rod_length, k.stick_cylinder_base_x
+        stick_cylinder_base_z, stick_cylinder_eye_x = k.stick_cylinder_base_z, k.stick_cylinder_eye_x
+        stick_cylinder_eye_z, stick_length = k.stick_cylinder_eye_z, k.stick_length
+        motor_s2 = axis_s2 - offset_s2
+        level_of_b = (
+            motor_s2 * motor_s2
+            - boom_cylinder_base_x * boom_cylinder_base_x
+            - boom_cylinder_base_z * boom_cylinder_base_z
+            - boom_cylinder_eye_x * boom_cylinder_eye_x
+            - boom_cylinder_eye_z * boom_cylinder_eye_z
+        )
+        # the loop of B, solved for B
+        along_of_b = (
+            -2.0 * boom_cylinder_base_x * boom_cylinder_eye_x - 2.0 * boom_cylinder_base_z * boom_cylinder_eye_z
+        )
+        across_of_b = (
+            2.0 * boom_cylinder_base_z * boom_cylinder_eye_x - 2.0 * boom_cylinder_base_x * boom_cylinder_eye_z
+        )
+        reach_of_b = sqrt(across_of_b * across_of_b + along_of_b * along_of_b)
+        # S2: its loop does not close
+        if not (abs(level_of_b) <= 1.000000000001 * reach_of_b and 2.0 * motor_s2 >= -1e-12 * machine_scale):
+            return Status.IMPOSSIBLE
+        motor_s3 = axis_s3 - offset_s3
+        level_of_c = (
+            motor_s3 * motor_s3
+            - stick_cylinder_base_x * stick_cylinder_base_x
+            - stick_cylinder_base_z * stick_cylinder_base_z
+            - stick_cylinder_eye_x * stick_cylinder_eye_x
+            - stick_cylinder_eye_z * stick_cylinder_eye_z
+        )
+        # the loop of C, solved for C
+        along_of_c = (
+            -2.0 * stick_cylinder_base_x * stick_cylinder_eye_x - 2.0 * stick_cylinder_base_z * stick_cylinder_eye_z
+        )
+        across_of_c = (
+            2.0 * stick_cylinder_base_z * stick_cylinder_eye_x - 2.0 * stick_cylinder_base_x * stick_cylinder_eye_z
+        )
+        reach_of_c = sqrt(across_of_c * across_of_c + along_of_c * along_of_c)
+        # S3: its loop does not close
+        if not (abs(level_of_c) <= 1.000000000001 * reach_of_c and 2.0 * motor_s3 >= -1e-12 * machine_scale):
+            return Status.IMPOSSIBLE
+        motor_s4 = axis_s4 - offset_s4
+        level_of_r = (
+            2.0 * bucket_cylinder_base_x * rocker_pivot_x
+            + motor_s4 * motor_s4
+            - bucket_cylinder_base_x * bucket_cylinder_base_x
+            - bucket_cylinder_base_z * bucket_cylinder_base_z
+            - rocker_length * rocker_length
+            - rocker_pivot_x * rocker_pivot_x
+        )
+        # the loop of R, solved for R
+        along_of_r = 2.0 * rocker_length * rocker_pivot_x - 2.0 * bucket_cylinder_base_x * rocker_length
+        across_of_r = 2.0 * bucket_cylinder_base_z * rocker_length
+        reach_of_r = sqrt(across_of_r * across_of_r + along_of_r * along_of_r)
+        # S4: its loop does not close
+        if not (abs(level_of_r) <= 1.000000000001 * reach_of_r and 2.0 * motor_s4 >= -1e-12 * machine_scale):
+            return Status.IMPOSSIBLE
+        root_of_r = root((reach_of_r - level_of_r) * (level_of_r + reach_of_r))
+        divisor_of_r = (
+            across_of_r * across_of_r + along_of_r * along_of_r
+            if across_of_r * across_of_r + along_of_r * along_of_r > 1e-12
+            else 1.0
+        )
+        cos_r = (across_of_r * root_of_r + along_of_r * level_of_r) / divisor_of_r
+        level_of_d = (
+            rod_length * rod_length
+            - bucket_ear_x * bucket_ear_x
+            - bucket_ear_z * bucket_ear_z
+            - rocker_length * rocker_length
+            - rocker_pivot_x * rocker_pivot_x
+            - 2.0 * rocker_length * rocker_pivot_x * cos_r
+        )
+        sin_r = (across_of_r * level_of_r - along_of_r * root_of_r) / divisor_of_r
+        # the loop of D, solved for D
+        along_of_d = (
+            2.0 * bucket_ear_z * rocker_length * sin_r
+            - 2.0 * bucket_ear_x * rocker_pivot_x
+            - 2.0 * bucket_ear_x * rocker_length * cos_r
+        )
+        across_of_d = (
+            -2.0 * bucket_ear_z * rocker_pivot_x
+            - 2.0 * bucket_ear_x * rocker_length * sin_r
+            - 2.0 * bucket_ear_z * rocker_length * cos_r
+        )
+        reach_of_d = sqrt(across_of_d * across_of_d + along_of_d * along_of_d)
+        # S4: its loop does not close
+        if not (abs(level_of_d) <= 1.000000000001 * reach_of_d):
+            return Status.IMPOSSIBLE
+        root_of_d = root((reach_of_d - level_of_d) * (level_of_d + reach_of_d))
+        divisor_of_d = (
+            across_of_d * across_of_d + along_of_d * along_of_d
+            if across_of_d * across_of_d + along_of_d * along_of_d > 1e-12
+            else 1.0
+        )
+        d = arctan2(
+            (across_of_d * level_of_d - along_of_d * root_of_d) / divisor_of_d + 0.0,
+            (across_of_d * root_of_d + along_of_d * level_of_d) / divisor_of_d + 0.0,
+        )
+        # S4: in the other assembly mode, or too close to a type 2 singularity
+        if not (
+            (
+                2.0 * rocker_length * rocker_pivot_x
+                - 2.0 * bucket_ear_x * cos(d) * rocker_length
+                - 2.0 * bucket_ear_z * rocker_length * sin(d)
+            )
+            * sin_r
+            - (2.0 * bucket_ear_z * cos(d) * rocker_length - 2.0 * bucket_ear_x * rocker_length * sin(d)) * cos_r
+            >= -2e-12 * rocker_length * rod_length
+        ):
+            return Status.IMPOSSIBLE
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        root_of_b = -root((reach_of_b - level_of_b) * (level_of_b + reach_of_b))
+        divisor_of_b = (
+            across_of_b * across_of_b + along_of_b * along_of_b
+            if across_of_b * across_of_b + along_of_b * along_of_b > 1e-12
+            else 1.0
+        )
+        b = arctan2(
+            (across_of_b * level_of_b - along_of_b * root_of_b) / divisor_of_b + 0.0,
+            (across_of_b * root_of_b + along_of_b * level_of_b) / divisor_of_b + 0.0,
+        )
+        root_of_c = root((reach_of_c - level_of_c) * (level_of_c + reach_of_c))
+        divisor_of_c = (
+            across_of_c * across_of_c + along_of_c * along_of_c
+            if across_of_c * across_of_c + along_of_c * along_of_c > 1e-12
+            else 1.0
+        )
+        c = arctan2(
+            (across_of_c * level_of_c - along_of_c * root_of_c) / divisor_of_c + 0.0,
+            (across_of_c * root_of_c + along_of_c * level_of_c) / divisor_of_c + 0.0,
+        )
+        r = arctan2(sin_r + 0.0, cos_r + 0.0)
+        return (
+            0.0,
+            0.0,
+            0.0,
+            boom_foot_x * cos(a1),
+            boom_foot_x * sin(a1),
+            0.0,
+            boom_foot_x * cos(a1),
+            boom_foot_x * sin(a1),
+            boom_foot_z,
+            boom_foot_x * cos(a1) + boom_length * cos(a1) * cos(b),
+            boom_foot_x * sin(a1) + boom_length * cos(b) * sin(a1),
+            boom_foot_z - boom_length * sin(b),
+            boom_foot_x * cos(a1) + boom_length * cos(a1) * cos(b) + cos(a1) * cos(b + c) * stick_length,
+            boom_foot_x * sin(a1) + boom_length * cos(b) * sin(a1) + cos(b + c) * sin(a1) * stick_length,
+            boom_foot_z - boom_length * sin(b) - sin(b + c) * stick_length,
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + bucket_length * cos(a1) * cos(b + c + d)
+            + cos(a1) * cos(b + c) * stick_length,
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + bucket_length * cos(b + c + d) * sin(a1)
+            + cos(b + c) * sin(a1) * stick_length,
+            boom_foot_z - boom_length * sin(b) - bucket_length * sin(b + c + d) - sin(b + c) * stick_length,
+            boom_foot_x * cos(a1) + (boom_cylinder_eye_x * cos(b) + boom_cylinder_eye_z * sin(b)) * cos(a1),
+            boom_foot_x * sin(a1) + (boom_cylinder_eye_x * cos(b) + boom_cylinder_eye_z * sin(b)) * sin(a1),
+            boom_foot_z + boom_cylinder_eye_z * cos(b) - boom_cylinder_eye_x * sin(b),
+            boom_cylinder_base_x * cos(a1) + boom_foot_x * cos(a1),
+            boom_cylinder_base_x * sin(a1) + boom_foot_x * sin(a1),
+            boom_cylinder_base_z + boom_foot_z,
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + (cos(c) * stick_cylinder_eye_z - sin(c) * stick_cylinder_eye_x) * cos(a1) * sin(b)
+            + cos(a1) * cos(b) * (cos(c) * stick_cylinder_eye_x + sin(c) * stick_cylinder_eye_z),
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + (cos(c) * stick_cylinder_eye_z - sin(c) * stick_cylinder_eye_x) * sin(a1) * sin(b)
+            + cos(b) * sin(a1) * (cos(c) * stick_cylinder_eye_x + sin(c) * stick_cylinder_eye_z),
+            boom_foot_z
+            + (cos(c) * stick_cylinder_eye_z - sin(c) * stick_cylinder_eye_x) * cos(b)
+            - boom_length * sin(b)
+            - sin(b) * (cos(c) * stick_cylinder_eye_x + sin(c) * stick_cylinder_eye_z),
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + cos(a1) * cos(b) * stick_cylinder_base_x
+            + cos(a1) * sin(b) * stick_cylinder_base_z,
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + cos(b) * sin(a1) * stick_cylinder_base_x
+            + sin(a1) * sin(b) * stick_cylinder_base_z,
+            boom_foot_z + cos(b) * stick_cylinder_base_z - boom_length * sin(b) - sin(b) * stick_cylinder_base_x,
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + cos(a1) * cos(b + c) * rocker_pivot_x
+            + cos(a1) * cos(b + c) * stick_length,
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + cos(b + c) * rocker_pivot_x * sin(a1)
+            + cos(b + c) * sin(a1) * stick_length,
+            boom_foot_z - boom_length * sin(b) - rocker_pivot_x * sin(b + c) - sin(b + c) * stick_length,
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + cos(a1) * cos(b + c) * stick_length
+            + cos(a1) * cos(b + c) * (rocker_pivot_x + cos(r) * rocker_length)
+            - cos(a1) * rocker_length * sin(b + c) * sin(r),
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + cos(b + c) * sin(a1) * stick_length
+            + cos(b + c) * (rocker_pivot_x + cos(r) * rocker_length) * sin(a1)
+            - rocker_length * sin(a1) * sin(b + c) * sin(r),
+            boom_foot_z
+            - boom_length * sin(b)
+            - sin(b + c) * stick_length
+            - (rocker_pivot_x + cos(r) * rocker_length) * sin(b + c)
+            - cos(b + c) * rocker_length * sin(r),
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + bucket_cylinder_base_x * cos(a1) * cos(b + c)
+            + bucket_cylinder_base_z * cos(a1) * sin(b + c)
+            + cos(a1) * cos(b + c) * stick_length,
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + bucket_cylinder_base_x * cos(b + c) * sin(a1)
+            + bucket_cylinder_base_z * sin(a1) * sin(b + c)
+            + cos(b + c) * sin(a1) * stick_length,
+            boom_foot_z
+            + bucket_cylinder_base_z * cos(b + c)
+            - boom_length * sin(b)
+            - bucket_cylinder_base_x * sin(b + c)
+            - sin(b + c) * stick_length,
+            boom_foot_x * cos(a1)
+            + boom_length * cos(a1) * cos(b)
+            + cos(a1) * cos(b + c) * stick_length
+            + (bucket_ear_z * cos(d) - bucket_ear_x * sin(d)) * cos(a1) * sin(b + c)
+            + (bucket_ear_x * cos(d) + bucket_ear_z * sin(d)) * cos(a1) * cos(b + c),
+            boom_foot_x * sin(a1)
+            + boom_length * cos(b) * sin(a1)
+            + cos(b + c) * sin(a1) * stick_length
+            + (bucket_ear_z * cos(d) - bucket_ear_x * sin(d)) * sin(a1) * sin(b + c)
+            + (bucket_ear_x * cos(d) + bucket_ear_z * sin(d)) * cos(b + c) * sin(a1),
+            boom_foot_z
+            + (bucket_ear_z * cos(d) - bucket_ear_x * sin(d)) * cos(b + c)
+            - boom_length * sin(b)
+            - sin(b + c) * stick_length
+            - (bucket_ear_x * cos(d) + bucket_ear_z * sin(d)) * sin(b + c),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

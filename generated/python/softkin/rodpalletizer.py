@@ -134,7 +134,9 @@ class Constants:
         self.base_height, self.shoulder_offset, self.link_length_1 = base_height, shoulder_offset, link_length_1
         self.link_length_2, self.wrist_offset_x, self.wrist_offset_z = link_length_2, wrist_offset_x, wrist_offset_z
         self.cylinder_base_x, self.cylinder_base_z, self.cylinder_eye = cylinder_base_x, cylinder_base_z, cylinder_eye
-        self.offset_a1, self.offset_s2, self.offset_m3, self.offset_a4 = offset_a1, offset_s2, offset_m3, offset_a4
+        self.crank_base_x, self.crank_base_z, self.crank_length = crank_base_x, crank_base_z, crank_length
+        self.rod_length, self.lever_length, self.offset_a1 = rod_length, lever_length, offset_a1
+        self.offset_s2, self.offset_m3, self.offset_a4 = offset_s2, offset_m3, offset_a4
         self.machine_scale, self.along_of_b, self.across_of_b = machine_scale, along_of_b, across_of_b
         self.reach_of_b, self.bound_of_cos_swing_c_from_b = reach_of_b, bound_of_cos_swing_c_from_b
         self.rounding_a1 = rounding_a1
@@ -234,6 +236,24 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
     BRANCHES = 2
     PERIOD_AXES = (0, 3)
     LIMIT_KEYS = ("a1", "s2", "m3", "a4")
+    LINES = (
+        (0, 0, "A1"),
+        (0, 1, ""),
+        (1, 2, ""),
+        (2, 2, "S2"),
+        (2, 3, ""),
+        (3, 3, "S2 M3"),
+        (3, 4, ""),
+        (4, 4, "M3"),
+        (4, 5, ""),
+        (5, 6, ""),
+        (6, 6, "A4"),
+        (2, 7, ""),
+        (8, 7, "S2"),
+        (9, 10, ""),
+        (2, 11, ""),
+        (10, 11, "M3"),
+    )
     DISTANCE_AXES = (0, 2, 3)
 
     base_height: float
@@ -1786,6 +1806,127 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
         branch_shoulder = one_by_machine_scale * (x * cos_a1 + y * sin_a1)
         cos_c_from_b = cos(b - c)
         return (branch_shoulder, cos_c_from_b)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_s2, axis_m3, _ = axes
+        k = self._constants
+        base_height, crank_base_x, crank_base_z = k.base_height, k.crank_base_x, k.crank_base_z
+        crank_length, cylinder_base_x, cylinder_base_z = k.crank_length, k.cylinder_base_x, k.cylinder_base_z
+        cylinder_eye, lever_length, link_length_1 = k.cylinder_eye, k.lever_length, k.link_length_1
+        link_length_2, machine_scale, offset_a1, offset_m3 = k.link_length_2, k.machine_scale, k.offset_a1, k.offset_m3
+        offset_s2, rod_length, shoulder_offset = k.offset_s2, k.rod_length, k.shoulder_offset
+        wrist_offset_x, wrist_offset_z = k.wrist_offset_x, k.wrist_offset_z
+        motor_s2 = axis_s2 - offset_s2
+        level_of_b = (
+            motor_s2 * motor_s2
+            - cylinder_base_x * cylinder_base_x
+            - cylinder_base_z * cylinder_base_z
+            - cylinder_eye * cylinder_eye
+        )
+        along_of_b = -2.0 * cylinder_base_z * cylinder_eye  # the loop of B, solved for B
+        across_of_b = -2.0 * cylinder_base_x * cylinder_eye
+        reach_of_b = sqrt(across_of_b * across_of_b + along_of_b * along_of_b)
+        # S2: its loop does not close
+        if not (abs(level_of_b) <= 1.000000000001 * reach_of_b and 2.0 * motor_s2 >= -1e-12 * machine_scale):
+            return Status.IMPOSSIBLE
+        motor_m3 = DEGREE * (axis_m3 - offset_m3)
+        cos_motor_m3 = cos(motor_m3)
+        sin_motor_m3 = sin(motor_m3)
+        level_of_c = (
+            rod_length * rod_length
+            + 2.0 * crank_base_z * crank_length * sin_motor_m3
+            - crank_base_x * crank_base_x
+            - crank_base_z * crank_base_z
+            - crank_length * crank_length
+            - lever_length * lever_length
+            - 2.0 * crank_base_x * crank_length * cos_motor_m3
+        )
+        # the loop of C, solved for C
+        along_of_c = -2.0 * crank_base_x * lever_length - 2.0 * crank_length * lever_length * cos_motor_m3
+        across_of_c = 2.0 * crank_base_z * lever_length - 2.0 * crank_length * lever_length * sin_motor_m3
+        reach_of_c = sqrt(across_of_c * across_of_c + along_of_c * along_of_c)
+        # M3: its loop does not close
+        if not (abs(level_of_c) <= 1.000000000001 * reach_of_c):
+            return Status.IMPOSSIBLE
+        root_of_c = -root((reach_of_c - level_of_c) * (level_of_c + reach_of_c))
+        divisor_of_c = (
+            across_of_c * across_of_c + along_of_c * along_of_c
+            if across_of_c * across_of_c + along_of_c * along_of_c > 1e-12
+            else 1.0
+        )
+        c = arctan2(
+            (across_of_c * level_of_c - along_of_c * root_of_c) / divisor_of_c + 0.0,
+            (across_of_c * root_of_c + along_of_c * level_of_c) / divisor_of_c + 0.0,
+        )
+        # M3: in the other assembly mode, or too close to a type 2 singularity
+        if not (
+            (-2.0 * crank_base_z * crank_length - 2.0 * crank_length * lever_length * sin(c)) * cos_motor_m3
+            - (2.0 * crank_base_x * crank_length - 2.0 * cos(c) * crank_length * lever_length) * sin_motor_m3
+            >= -2e-12 * crank_length * rod_length
+        ):
+            return Status.IMPOSSIBLE
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        root_of_b = root((reach_of_b - level_of_b) * (level_of_b + reach_of_b))
+        divisor_of_b = (
+            across_of_b * across_of_b + along_of_b * along_of_b
+            if across_of_b * across_of_b + along_of_b * along_of_b > 1e-12
+            else 1.0
+        )
+        b = arctan2(
+            (across_of_b * level_of_b - along_of_b * root_of_b) / divisor_of_b + 0.0,
+            (across_of_b * root_of_b + along_of_b * level_of_b) / divisor_of_b + 0.0,
+        )
+        return (
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            base_height,
+            cos(a1) * shoulder_offset,
+            shoulder_offset * sin(a1),
+            base_height,
+            cos(a1) * shoulder_offset + cos(a1) * link_length_1 * sin(b),
+            shoulder_offset * sin(a1) + link_length_1 * sin(a1) * sin(b),
+            base_height + cos(b) * link_length_1,
+            cos(a1) * shoulder_offset + cos(a1) * link_length_1 * sin(b) + cos(a1) * cos(c) * link_length_2,
+            shoulder_offset * sin(a1) + link_length_1 * sin(a1) * sin(b) + cos(c) * link_length_2 * sin(a1),
+            base_height + cos(b) * link_length_1 - link_length_2 * sin(c),
+            cos(a1) * shoulder_offset
+            + cos(a1) * wrist_offset_x
+            + cos(a1) * link_length_1 * sin(b)
+            + cos(a1) * cos(c) * link_length_2,
+            shoulder_offset * sin(a1)
+            + sin(a1) * wrist_offset_x
+            + link_length_1 * sin(a1) * sin(b)
+            + cos(c) * link_length_2 * sin(a1),
+            base_height + cos(b) * link_length_1 - link_length_2 * sin(c),
+            cos(a1) * shoulder_offset
+            + cos(a1) * wrist_offset_x
+            + cos(a1) * link_length_1 * sin(b)
+            + cos(a1) * cos(c) * link_length_2,
+            shoulder_offset * sin(a1)
+            + sin(a1) * wrist_offset_x
+            + link_length_1 * sin(a1) * sin(b)
+            + cos(c) * link_length_2 * sin(a1),
+            base_height + wrist_offset_z + cos(b) * link_length_1 - link_length_2 * sin(c),
+            cos(a1) * shoulder_offset + cos(a1) * cylinder_eye * sin(b),
+            shoulder_offset * sin(a1) + cylinder_eye * sin(a1) * sin(b),
+            base_height + cos(b) * cylinder_eye,
+            cos(a1) * cylinder_base_x + cos(a1) * shoulder_offset,
+            cylinder_base_x * sin(a1) + shoulder_offset * sin(a1),
+            base_height + cylinder_base_z,
+            cos(a1) * crank_base_x + cos(a1) * shoulder_offset,
+            crank_base_x * sin(a1) + shoulder_offset * sin(a1),
+            base_height + crank_base_z,
+            cos(a1) * shoulder_offset + cos(a1) * (crank_base_x + cos(motor_m3) * crank_length),
+            shoulder_offset * sin(a1) + (crank_base_x + cos(motor_m3) * crank_length) * sin(a1),
+            base_height + crank_base_z - crank_length * sin(motor_m3),
+            cos(a1) * shoulder_offset + cos(a1) * cos(c) * lever_length,
+            shoulder_offset * sin(a1) + cos(c) * lever_length * sin(a1),
+            base_height - lever_length * sin(c),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

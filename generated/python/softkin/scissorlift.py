@@ -60,8 +60,9 @@ class Constants:
         machine_scale_times_plane = 1e-6 * machine_scale
         product_in_rate_h = 4e-12 * beam_length
         one_by_beam_length = 1.0 / beam_length
-        self.table_height, self.offset_s1, self.offset_a2 = table_height, offset_s1, offset_a2
-        self.beam_length_squared, self.beam_length_times_free_angle = beam_length_squared, beam_length_times_free_angle
+        self.beam_length, self.table_height, self.offset_s1 = beam_length, table_height, offset_s1
+        self.offset_a2, self.beam_length_squared = offset_a2, beam_length_squared
+        self.beam_length_times_free_angle = beam_length_times_free_angle
         self.machine_scale_times_plane, self.product_in_rate_h = machine_scale_times_plane, product_in_rate_h
         self.one_by_beam_length = one_by_beam_length
 
@@ -107,6 +108,7 @@ class ScissorLift(OffsetKinematics, TwistChoice):
     BRANCHES = 0
     PERIOD_AXES = (1,)
     LIMIT_KEYS = ("s1", "a2")
+    LINES = ((0, 1, "S1"), (1, 2, ""), (2, 2, "A2"), (3, 1, "S1"))
     DISTANCE_AXES = (1,)
 
     beam_length: float
@@ -400,6 +402,19 @@ class ScissorLift(OffsetKinematics, TwistChoice):
         if not (rest_of_h >= -1e-12 * abs(rest_of_h) and 2.0 * motor_s1 >= -beam_length_times_free_angle):
             return Status.IMPOSSIBLE
         return ()
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_s1, _ = axes
+        k = self._constants
+        beam_length, offset_s1, table_height = k.beam_length, k.offset_s1, k.table_height
+        motor_s1 = axis_s1 - offset_s1
+        rest_of_h = beam_length * beam_length - motor_s1 * motor_s1
+        # S1: its loop does not close
+        if not (rest_of_h >= -1e-12 * abs(rest_of_h) and 2.0 * motor_s1 >= -2e-12 * beam_length):
+            return Status.IMPOSSIBLE
+        h = sqrt(rest_of_h) if rest_of_h > 0.0 else 0.0
+        return (0.0, 0.0, 0.0, 0.0, 0.0, h, 0.0, 0.0, h + table_height, motor_s1, 0.0, 0.0)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

@@ -114,18 +114,22 @@ def line_of(sample: Sample, axes: Array) -> tuple[Array, Callable[[float], Frame
     shift = 0.05 * sample.reach * rng.uniform(-1.0, 1.0, 3)
     spins = {Turning.ABOUT_Z: np.array([0.0, 0.0, 0.7]), Turning.FULL: rng.uniform(-0.7, 0.7, 3)}
     spin = spins.get(turning, np.zeros(3))
-    names = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
-    known = dict(zip(names, (*shift, *spin, 0.0, 0.0), strict=True))
+    names = ("x", "y", "z", "turn x", "turn y", "turn z")
+    known = dict(zip(names, (*shift, *spin), strict=True))
     frame, _ = sample.robot.forward(axes)
-    own = np.array([known[row] for row in sample.robot.JACOBIAN_ROWS])
+    own = np.array([known.get(row, 0.0) for row in sample.robot.JACOBIAN_ROWS])
     moved = np.where([c in sample.mechanism.task.position for c in "xyz"], shift, 0.0)
     size = np.linalg.norm(spin) or 1.0
-    skew = np.cross(np.eye(3), spin / size)
+    follows = sample.mechanism.followed_turns > 0
+    skew = np.cross(np.eye(3), np.array([0.0, 0.0, 1.0]) if follows else spin / size)
 
     def at(time: float) -> Frame:
+        position = np.array(frame.position) + time * moved
         angle = size * time if spin.any() else 0.0
+        if follows:  # the heading follows the position
+            angle = math.atan2(position[1], position[0]) - math.atan2(frame.position[1], frame.position[0])
         turn = np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * skew @ skew
-        return Frame(tuple(np.array(frame.position) + time * moved), tuple(map(tuple, turn @ np.array(frame.rotation))))
+        return Frame(tuple(position), tuple(map(tuple, turn @ np.array(frame.rotation))))
 
     return own, at
 
