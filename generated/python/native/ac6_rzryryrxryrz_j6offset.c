@@ -1307,7 +1307,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   int steps_left = 0;
   bool was_mirrored = false;
   double nearest = 9.0;
-  int passes_left = 6000;
+  int passes_left = 1500;
   double at = 0.0;
   int trials = 0;
   double best = 0.0;
@@ -1316,6 +1316,12 @@ static softkin_status find_root(const void *machine, const double *given, double
   double last = 0.0;
   double growth_before = 0.0;
   double bend = 0.0;
+  double settled_1 = 9.0;
+  double settled_2 = 9.0;
+  double settled_3 = 9.0;
+  double settled_4 = 9.0;
+  double settled_5 = 9.0;
+  double settled_6 = 9.0;
   double q1 = 0.0;
   double met_from_q1 = 0.0;
   double kept_q1 = 0.0;
@@ -1342,15 +1348,16 @@ static softkin_status find_root(const void *machine, const double *given, double
       spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
       value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
       place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
+      settled_1_next, settled_2_next, settled_3_next, settled_4_next, settled_5_next, settled_6_next,
       q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next, kept_now_q2, q3_next,
       met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next, met_from_q5_next,
       kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
-  bool is_rounding, is_less, is_settled, is_near, steps_end, meets_pose, fits, way_ends, is_better,
+  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends, is_better,
       is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
       seeks_length, turns_back, is_over, was_mirrored_next;
-  for (int pass = 0; pass < 6001; pass += 1) {
+  for (int pass = 0; pass < 1501; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
     if (stage == 0) {
@@ -1391,8 +1398,11 @@ static softkin_status find_root(const void *machine, const double *given, double
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
     is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 5) || (fabs(at - newton_place) <= 1e-10));
-    is_near = is_settled && ((width > 1e-6)
-        || ((least_now <= 0.001) && ((room_of_trial <= 1e-6) || (side > 0))));
+    is_known = (fabs(best_now - settled_1) <= 1e-9) || (fabs(best_now - settled_2) <= 1e-9)
+        || (fabs(best_now - settled_3) <= 1e-9) || (fabs(best_now - settled_4) <= 1e-9)
+        || (fabs(best_now - settled_5) <= 1e-9) || (fabs(best_now - settled_6) <= 1e-9);
+    is_near = is_settled && (((!is_known) && (width > 1e-6))
+        || ((least_now <= 0.001) && (width <= 1e-6) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
@@ -1479,7 +1489,7 @@ static softkin_status find_root(const void *machine, const double *given, double
         : ((!is_rounding) && (stage == 0) && (width <= 0.0) ? place_ + safe_step : place_));
     width_next = turns_back ? 0.0
         : (part_is_done ? 0.0 : ((!part_ends) && (stage == 0)
-        ? (width > 0.0 ? 2.0*width : (is_rounding ? 1e-13 : 0.0)) : width));
+        ? (width > 0.0 ? (width <= 1e-6 ? 8.0 : 2.0)*width : (is_rounding ? 1e-13 : 0.0)) : width));
     side_next = part_ends ? 1 : (side_ends ? -1 : side);
     shortest_now = is_shortest ? best_now : shortest;
     growth = (number_of_start > 12 ? growth_2 : growth_1)*real_of_direction;
@@ -1524,6 +1534,12 @@ static softkin_status find_root(const void *machine, const double *given, double
     last_next = begins || is_shortest ? place_of_start : at;
     growth_before_next = begins || is_shortest ? 0.0 : growth;
     bend_next = begins || is_shortest ? 0.0 : bend_now;
+    settled_1_next = is_first ? 9.0 : (is_near ? best_now : settled_1);
+    settled_2_next = is_first ? 9.0 : (is_near ? settled_1 : settled_2);
+    settled_3_next = is_first ? 9.0 : (is_near ? settled_2 : settled_3);
+    settled_4_next = is_first ? 9.0 : (is_near ? settled_3 : settled_4);
+    settled_5_next = is_first ? 9.0 : (is_near ? settled_4 : settled_5);
+    settled_6_next = is_first ? 9.0 : (is_near ? settled_5 : settled_6);
     q1_next = is_near ? begun_q1 : (mirrors ? 2.0*met_from_q1 - q1 : moved_q1);
     met_from_q1_next = is_near ? begun_q1 : met_from_q1;
     kept_now_q1 = is_better ? q1 : kept_q1;
@@ -1566,6 +1582,12 @@ static softkin_status find_root(const void *machine, const double *given, double
     last = last_next;
     growth_before = growth_before_next;
     bend = bend_next;
+    settled_1 = settled_1_next;
+    settled_2 = settled_2_next;
+    settled_3 = settled_3_next;
+    settled_4 = settled_4_next;
+    settled_5 = settled_5_next;
+    settled_6 = settled_6_next;
     q1 = q1_next;
     met_from_q1 = met_from_q1_next;
     kept_q1 = kept_now_q1;

@@ -32,15 +32,15 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 4029850 additions, 5670495 multiplications, 324143 divisions, 132024 square roots, 264088 sines
-    inverse, all 16 branches: 64477873 additions, 90728016 multiplications, 5186288 divisions, 2112384 square
-    roots, 4225408 sines
+    inverse: 678629 additions, 895644 multiplications, 34612 divisions, 18014 square roots, 36068 sines
+    inverse, all 16 branches: 10858337 additions, 14330400 multiplications, 553792 divisions, 288224 square
+    roots, 577088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
     12 sines
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
-    one step of the search: at most 6001 passes, all of which are counted
+    one step of the search: at most 1501 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset f345840b5b4deec2"
+    KEY = "ac6_rzryryrxryrz_j6offset f4d0abcee072b5eb"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1689,6 +1689,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last,
             growth_before,
             bend,
+            settled_1,
+            settled_2,
+            settled_3,
+            settled_4,
+            settled_5,
+            settled_6,
             q1,
             met_from_q1,
             kept_q1,
@@ -1720,7 +1726,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0,
             False,
             9.0,
-            6000,
+            1500,
             0.0,
             0,
             0.0,
@@ -1729,6 +1735,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
             0.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
             0.0,
             0.0,
             0.0,
@@ -1748,7 +1760,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
         )
-        for _ in range(6001):
+        for _ in range(1501):
             place_plus_width = place + width
             if stage == 0:
                 found = self._look_at_wave(
@@ -1831,8 +1843,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
             is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 5) or (abs(at - newton_place) <= 1e-10))
+            is_known = (
+                (abs(best_now - settled_1) <= 1e-9)
+                or (abs(best_now - settled_2) <= 1e-9)
+                or (abs(best_now - settled_3) <= 1e-9)
+                or (abs(best_now - settled_4) <= 1e-9)
+                or (abs(best_now - settled_5) <= 1e-9)
+                or (abs(best_now - settled_6) <= 1e-9)
+            )
             is_near = is_settled and (
-                (width > 1e-6) or ((least_now <= 0.001) and ((room_of_trial <= 1e-6) or (side > 0)))
+                ((not is_known) and (width > 1e-6))
+                or ((least_now <= 0.001) and (width <= 1e-6) and ((room_of_trial <= 1e-6) or (side > 0)))
             )
             if is_near:
                 found = self._joints_at(
@@ -1996,7 +2017,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     0.0
                     if part_is_done
                     else (
-                        (2.0 * width if width > 0.0 else (1e-13 if is_rounding else 0.0))
+                        ((8.0 if width <= 1e-6 else 2.0) * width if width > 0.0 else (1e-13 if is_rounding else 0.0))
                         if (not part_ends) and (stage == 0)
                         else width
                     )
@@ -2105,6 +2126,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last_next = place_of_start if begins or is_shortest else at
             growth_before_next = 0.0 if begins or is_shortest else growth
             bend_next = 0.0 if begins or is_shortest else bend_now
+            settled_1_next = 9.0 if is_first else (best_now if is_near else settled_1)
+            settled_2_next = 9.0 if is_first else (settled_1 if is_near else settled_2)
+            settled_3_next = 9.0 if is_first else (settled_2 if is_near else settled_3)
+            settled_4_next = 9.0 if is_first else (settled_3 if is_near else settled_4)
+            settled_5_next = 9.0 if is_first else (settled_4 if is_near else settled_5)
+            settled_6_next = 9.0 if is_first else (settled_5 if is_near else settled_6)
             q1_next = begun_q1 if is_near else (2.0 * met_from_q1 - q1 if mirrors else moved_q1)
             met_from_q1_next = begun_q1 if is_near else met_from_q1
             kept_now_q1 = q1 if is_better else kept_q1
@@ -2146,6 +2173,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last = last_next
             growth_before = growth_before_next
             bend = bend_next
+            settled_1 = settled_1_next
+            settled_2 = settled_2_next
+            settled_3 = settled_3_next
+            settled_4 = settled_4_next
+            settled_5 = settled_5_next
+            settled_6 = settled_6_next
             q1 = q1_next
             met_from_q1 = met_from_q1_next
             kept_q1 = kept_now_q1

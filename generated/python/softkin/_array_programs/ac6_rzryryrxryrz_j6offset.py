@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8405
+    VALUES = 8613
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1531,6 +1531,12 @@ class ArrayPrograms(Programs):
             last,
             growth_before,
             bend,
+            settled_1,
+            settled_2,
+            settled_3,
+            settled_4,
+            settled_5,
+            settled_6,
             q1,
             met_from_q1,
             kept_q1,
@@ -1562,7 +1568,7 @@ class ArrayPrograms(Programs):
             0,
             False,
             9.0,
-            6000,
+            1500,
             0.0,
             0,
             0.0,
@@ -1571,6 +1577,12 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
             0.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
             0.0,
             0.0,
             0.0,
@@ -1590,7 +1602,7 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
         )
-        for _ in range(6001):
+        for _ in range(1501):
             place_plus_width = place + width
             found = run_where(
                 stage == 0,
@@ -1665,7 +1677,18 @@ class ArrayPrograms(Programs):
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
             is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 5) | (absolute(at - newton_place) <= 1e-10))
-            is_near = is_settled & ((width > 1e-6) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
+            is_known = (
+                (absolute(best_now - settled_1) <= 1e-9)
+                | (absolute(best_now - settled_2) <= 1e-9)
+                | (absolute(best_now - settled_3) <= 1e-9)
+                | (absolute(best_now - settled_4) <= 1e-9)
+                | (absolute(best_now - settled_5) <= 1e-9)
+                | (absolute(best_now - settled_6) <= 1e-9)
+            )
+            is_near = is_settled & (
+                ((opposite(is_known)) & (width > 1e-6))
+                | ((least_now <= 0.001) & (width <= 1e-6) & ((room_of_trial <= 1e-6) | (side > 0)))
+            )
             found = run_where(
                 is_near,
                 self.joints_at,
@@ -1823,7 +1846,7 @@ class ArrayPrograms(Programs):
                     0.0,
                     select(
                         (opposite(part_ends)) & (stage == 0),
-                        select(width > 0.0, 2.0 * width, select(is_rounding, 1e-13, 0.0)),
+                        select(width > 0.0, select(width <= 1e-6, 8.0, 2.0) * width, select(is_rounding, 1e-13, 0.0)),
                         width,
                     ),
                 ),
@@ -1925,6 +1948,12 @@ class ArrayPrograms(Programs):
             last_next = select(begins | is_shortest, place_of_start, at)
             growth_before_next = select(begins | is_shortest, 0.0, growth)
             bend_next = select(begins | is_shortest, 0.0, bend_now)
+            settled_1_next = select(is_first, 9.0, select(is_near, best_now, settled_1))
+            settled_2_next = select(is_first, 9.0, select(is_near, settled_1, settled_2))
+            settled_3_next = select(is_first, 9.0, select(is_near, settled_2, settled_3))
+            settled_4_next = select(is_first, 9.0, select(is_near, settled_3, settled_4))
+            settled_5_next = select(is_first, 9.0, select(is_near, settled_4, settled_5))
+            settled_6_next = select(is_first, 9.0, select(is_near, settled_5, settled_6))
             q1_next = select(is_near, begun_q1, select(mirrors, 2.0 * met_from_q1 - q1, moved_q1))
             met_from_q1_next = select(is_near, begun_q1, met_from_q1)
             kept_now_q1 = select(is_better, q1, kept_q1)
@@ -1968,6 +1997,12 @@ class ArrayPrograms(Programs):
                 last,
                 growth_before,
                 bend,
+                settled_1,
+                settled_2,
+                settled_3,
+                settled_4,
+                settled_5,
+                settled_6,
                 q1,
                 met_from_q1,
                 kept_q1,
@@ -2010,6 +2045,12 @@ class ArrayPrograms(Programs):
                     last,
                     growth_before,
                     bend,
+                    settled_1,
+                    settled_2,
+                    settled_3,
+                    settled_4,
+                    settled_5,
+                    settled_6,
                     q1,
                     met_from_q1,
                     kept_q1,
@@ -2051,6 +2092,12 @@ class ArrayPrograms(Programs):
                     last_next,
                     growth_before_next,
                     bend_next,
+                    settled_1_next,
+                    settled_2_next,
+                    settled_3_next,
+                    settled_4_next,
+                    settled_5_next,
+                    settled_6_next,
                     q1_next,
                     met_from_q1_next,
                     kept_now_q1,
