@@ -96,7 +96,7 @@ def _plane(task: Task) -> tuple[int, int] | None:
 
 
 def _without_search(kinematics: Kinematics, machine: Machine) -> Machine:
-    """The machine with a closed form, if there is one, without the branch of a root scan, which a picture cannot
+    """The machine with a closed form, if there is one, without the branch of a root search, which a picture cannot
     show."""
     search = kinematics.mechanism.search
     return (

@@ -56,10 +56,10 @@ reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where the error of every length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
-"""A root of a scan counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
+"""A root of a search counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
 the square root of `BOUNDARY`."""
 MET = sp.Float("1e-10")
-"""A root of a scan meets the pose where its error is at most this share of the machine's scale, and at most this
+"""A root of a search meets the pose where its error is at most this share of the machine's scale, and at most this
 many radians."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""

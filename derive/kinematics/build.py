@@ -125,8 +125,8 @@ def _samples(
 
 
 def _scanned(both: Scanned) -> Kinematics:
-    """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is scanned,
-    and the determinant of the Jacobian is the margin.
+    """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is
+    searched, and the determinant of the Jacobian is the margin.
     """
     mechanism = both.mechanism
     refuse_names(mechanism, (*GOAL.values(), *(s.name for s in trial_on_branch(both).statements)))

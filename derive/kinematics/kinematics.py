@@ -60,7 +60,7 @@ class Inverted:
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
-    """With a root scan: the number of solutions that no slot held, and the number of all solutions."""
+    """With a root search: the number of solutions that no slot held, and the number of all solutions."""
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ class Kinematics:
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without
                      limits
-    search_given     as branch → the arguments of the root scan of that branch; None if there is a closed form
-    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root scan
+    search_given     as branch → the arguments of the root search of that branch; None if there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root search
     derived_branch   as branch, step by step as it was derived; the optimiser unrolls it
     limits           axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities
     singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; and the length
@@ -165,7 +165,7 @@ class Kinematics:
     search_given: Program | None = None
     from_joints: Program | None = None
     tried_branches: int = 0
-    """With a root scan: the number of first branches that are signs of the steps of a trial; the others tell roots
+    """With a root search: the number of first branches that are signs of the steps of a trial; the others tell roots
     apart."""
     twist: Program | None = None
     twist_bias: Program | None = None

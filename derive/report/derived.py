@@ -106,7 +106,7 @@ class Derived:
     """The formulas of the margins."""
     searched: Joint | None = None
     where: Parameter | None = None
-    """The parameter at whose zero no root scan is needed."""
+    """The parameter at whose zero no root search is needed."""
 
 
 def derived_of(solution: Solution) -> Derived:

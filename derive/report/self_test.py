@@ -132,7 +132,7 @@ class _Vectors:
         """
         if not self._regular:
             raise DescriptionError("no sampled pose is regular: check the nominal values of parameters and joints")
-        poses = self._regular[: 1 if self._mechanism.search else _TRIED]  # to compare poses, a root scan takes long
+        poses = self._regular[: 1 if self._mechanism.search else _TRIED]  # to compare poses, a root search takes long
         solutions = [sum(status is Status.OK for status in self._statuses(axes)) for axes in poses]
         best = poses[int(np.argmax(solutions))]
         return (best, *[axes for axes in self._regular if axes != best][: _SHOWN - 1])
@@ -189,7 +189,7 @@ class _Vectors:
         return list(branches(self.machine, frame, every, self._aside(axes))[2])
 
     def _branches(self) -> Iterator[Case]:
-        """The first pose with its own configuration, and on every branch without turns; a root scan
+        """The first pose with its own configuration, and on every branch without turns; a root search
         that fails is long.
         """
         axes, frame = self.poses[0], self.frames[0]

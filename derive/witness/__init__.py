@@ -14,7 +14,7 @@ frames: the frames of a chain, multiplied out factor by factor; CasADi functions
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing; the assembly mode of a platform
 orientation: the check of the orientations that a flange can have
-planted: poses close to where branches of a root scan meet
+planted: poses close to where branches of a root search meet
 roots: all solutions of the closure for a pose, from many starts
 samples: machines and regular poses, drawn from a fixed seed
 """

@@ -193,8 +193,7 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
         text = (
-            f"A root scan is no proof: of {total} solutions, most of them close to poses where branches meet, it "
-            f"missed {missed}."
+            f"Of {total} solutions, most of them close to poses where branches meet, the root search missed {missed}."
         )
         yield from _lines(text)
 

@@ -1,4 +1,4 @@
-"""A mechanism with a root scan: both of its derivations, its trial with slopes, its inverse and its margins.
+"""A mechanism with a root search: both of its derivations, its trial with slopes, its inverse and its margins.
 
 A trial solves all joints but one, which is known, and leaves a residual, which is zero at a root. Like `kinematics`,
 it may import the folders from `ir` to `optimize`.

@@ -124,7 +124,7 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
 
 
 def _note(mechanism: Mechanism, found: _Candidate) -> str:
-    """The note about the root scan for users."""
+    """The note about the root search for users."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
     joint = found.joint.name
     first = (

@@ -603,7 +603,7 @@ static bool sort_in(void *context, const double *joints) {
   return true;
 }
 
-/* All roots of a scan for each choice of signs that a scan knows. */
+/* All roots of a search for each choice of signs that it knows. */
 static softkin_status all_roots(sorting *in, softkin_refusal *why) {
   in->others->count = 0;
   for (int scan = 0; scan < 1 << in->kind->side_count; scan += 1) {

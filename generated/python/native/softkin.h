@@ -16,7 +16,7 @@
  * radian. It does not compile with -ffast-math, /fp:fast or another option that removes tests for NaN. With
  * -ffp-contract=off all processors agree to the last digits.
  *
- * A call needs little stack (about 5 kB), except for machines whose inverse is a root scan: these need
+ * A call needs little stack (about 5 kB), except for machines whose inverse is a root search: these need
  * about 36 kB.
  */
 
@@ -67,12 +67,12 @@ typedef struct {
 typedef struct {
   uint32_t ready; /**< set by `_init` */
   bool check_limits;
-  bool is_searched; /**< whether the inverse is a root scan: then a branch may have several solutions */
+  bool is_searched; /**< whether the inverse is a root search: then a branch may have several solutions */
   double warning_distance;
   double tie; /**< squared distances (degrees, or u without rotary axes) that differ by less are equal */
 } softkin_base;
 
-/** Further solutions of a machine with a root scan; the caller owns the arrays. */
+/** Further solutions of a machine with a root search; the caller owns the arrays. */
 typedef struct {
   int capacity; /**< in: the size of the arrays in solutions, at least SOFTKIN_MOST_SOLUTIONS */
   double *axes; /**< capacity times the number of axes */

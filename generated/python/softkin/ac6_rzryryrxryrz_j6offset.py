@@ -54,7 +54,7 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
     The equations were not checked in a finite field: its roots are searched along a joint.
-    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
+    Of 406 solutions, most of them close to poses where branches meet, the root search missed 0.
 """
 
 from __future__ import annotations
@@ -3284,7 +3284,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return self._constants.searched
 
     def _all_joints(self, given: Values) -> list[Reals]:
-        """The joints at every root of a root scan."""
+        """The joints at every root of a root search."""
         return every_root(self._find_root, given, 18, 15)
 
     def _chain(self) -> tuple[Link, ...]:

@@ -354,7 +354,7 @@ export class Machine {
     return this.description.periodAxes.map((index, i) => turnOf(sizes[i] * axes[index]));
   }
 
-  /** Every slot of a searched machine: all roots of a scan for each choice of signs that a scan knows. */
+  /** Every slot of a searched machine: all roots of a search for each choice of signs that it knows. */
   _searched(every, given) {
     const { sides, branchCount } = this.description;
     const found = new Map();

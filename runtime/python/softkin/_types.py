@@ -98,7 +98,7 @@ class Solution(NamedTuple):
     axes: Reals | None
     status: Status
     others: tuple[Reals, ...] = ()
-    """Further solutions on the same branch, where the inverse is a root scan, the nearest to the reference first."""
+    """Further solutions on the same branch, where the inverse is a root search, the nearest to the reference first."""
     refusal: Diagnosis | None = None
     """Why there are no axes, as `diagnose` says: which axis is beyond a limit, and by how much."""
 

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from derive.ir.interpret import run
-from derive.kinematics.scan.programs import START
+from derive.kinematics.scan.derivations import solve_both
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
+from derive.kinematics.scan.programs import START
 from derive.kinematics.scan.search import FIRST, LONGEST
-from derive.kinematics.scan.wave import FIFTH, NOISE, names_of
+from derive.kinematics.scan.wave import FIFTH, NOISE, names_of, wave_program
+from derive.mechanisms import kin_ac6_rzryryrxryrz_j6offset as arm
 from tests.machines.made import Array
 
 TURN = 2.0 * np.pi
@@ -77,3 +79,8 @@ def test_a_wave_without_roots_has_no_part() -> None:
     angles = np.linspace(0.0, TURN, 50)
     said, _ = run(look_program(1), {**given, DIRECTION.name: np.array(1), AHEAD_BY.name: angles})
     assert not said[IS_ROUNDING.name].any() and (said[SAFE.name] > 0.3).all()
+
+
+def test_the_residuals_of_all_branches_are_a_wave_of_degree_eight() -> None:
+    """Of an arm with six turning axes: there are at most 16 solutions."""
+    assert wave_program(solve_both(arm.MECHANISM))[1] == 8
