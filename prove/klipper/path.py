@@ -131,7 +131,7 @@ class _Drawing:
 
 def _drawn(start: Array, size: float, letters: list[str]) -> list[_Drawing]:
     """Lines in every letter and an arc each way, and back; the same behind a G28, and away; what is refused or very
-    short, behind a G28 of one letter and a G92; and lines behind a G28 of another, which ends the G92.
+    short, behind a G28 of one letter and a G92; and a line behind an M84 and a G28 of others, which ends the G92.
     """
     first, again = _Drawing(start, letters, "G28"), _Drawing(start, letters, "G28")
     for drawing, long in ((first, size), (again, size / 2.0)):
@@ -148,6 +148,6 @@ def _drawn(start: Array, size: float, letters: list[str]) -> list[_Drawing]:
         short.line(SHORT * np.cos(turn), SHORT * np.sin(turn), SHORT, further=())
     short.refused()
     short.line(-0.3 * size, 0.2 * size, 0.2 * size)
-    last = _Drawing(start, letters, "G28 Y Z")
+    last = _Drawing(start, letters, "M84", "G28 Y Z")
     last.line(0.3 * size, 0.3 * size, -0.3 * size)
     return [first, again, short, last]
