@@ -17,14 +17,16 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat check test sweep quick report bench wheel javascript c clang linuxcnc fmu view prove-linuxcnc
+.PHONY: generate flat pacdrive check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu klipper br \
+	view docs prove-linuxcnc prove-klipper
 
 generate: $(READY)
 	$(RUN) -m derive $(if $(MECHANISM),derive $(MECHANISM) --out $(OUT),generate) $(OPTIONS) $(if $(MECHANISM),,$(if $(FRESH),--fresh))
 
 # Blocks without a base, each with all of its methods, into build/flat/st: for older versions of CODESYS.
-flat: $(READY)
-	$(RUN) -m derive generate --output $(OUT)/flat --profile $(or $(PROFILE),flat)
+# And user transformations for Schneider PacDrive, into build/pacdrive/st.
+flat pacdrive: $(READY)
+	$(RUN) -m derive generate --output $(OUT)/$@ --profile $(or $(PROFILE),$@)
 
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
@@ -34,9 +36,9 @@ javascript: $(READY)
 c: $(READY)
 	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
 
-# Kinematics modules of LinuxCNC into build/linuxcnc, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
+# Kinematics modules of LinuxCNC and Klipper into build/linuxcnc and build/klipper, C for B&R into build/br, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
 # MECHANISM=Kin_Scara3_Z of this machine; with MECHANISM=my_machine.py of a machine of your own.
-linuxcnc fmu: $(READY)
+linuxcnc fmu klipper br: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
 		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language $@ $(OPTIONS)
 
@@ -48,6 +50,10 @@ clang: c
 # One page with all machines, build/viewer.html, which opens in a browser from disk; MECHANISM=my_machine.py: that machine alone.
 view: $(READY)
 	$(RUN) -m derive view $(MECHANISM) --out $(OUT)
+
+# The site: guides, gallery, a page for each machine, the API. It opens from disk: build/docs/html/index.html. A broken link fails.
+docs: $(READY)
+	PYTHONPATH=generated/python $(RUN) docs/site/build.py build/docs
 
 check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
@@ -77,12 +83,18 @@ bench: $(READY) $(BENCH)/ready
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
 
-# Two wheels into dist/: one with the native core, for every CPython from 3.11 on with an old enough C library, as auditwheel
-# finds it; one without, for all other Pythons, free-threaded ones among them.
-wheel: $(WHEEL)/ready
+# The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md.
+peers: $(READY) $(BENCH)/peers
+	$(RUN) -m tests.native.build
+	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.peers
+
+# Two wheels into dist/, with the page of the viewer: one with the native core, for every CPython from 3.11 on with an old
+# enough C library, as auditwheel finds it; one without, for all other Pythons, free-threaded ones among them.
+wheel: $(WHEEL)/ready view
 	rm -rf build/wheel
 	mkdir -p build/wheel
 	cp -r generated/python build/wheel/source
+	cp $(OUT)/viewer.html build/wheel/source/softkin/_viewer.html
 	$(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/wheel build/wheel/source
 	rm -rf build/wheel/source/build
 	SOFTKIN_PURE=1 $(WHEEL)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist build/wheel/source
@@ -99,9 +111,24 @@ IF_POSSIBLE ?=
 prove-linuxcnc: $(READY)
 	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible) $(if $(FRESH),--fresh)
 
+# The real Klipper reads a program and writes every step, without hardware: make prove-klipper KLIPPER=its checkout.
+KLIPPER ?=
+KLIPPY := .venv-klipper
+prove-klipper: $(READY) $(if $(KLIPPER),$(KLIPPY)/ready)
+	PYTHONPATH=generated/python $(RUN) -m prove.klipper $(KLIPPER) $(if $(KLIPPER),--python $(abspath $(KLIPPY))/bin/python)
+
+$(KLIPPY)/ready: prove/klipper/requirements.txt
+	$(PYTHON) -m venv $(KLIPPY)
+	$(KLIPPY)/bin/python -m pip install --quiet --requirement prove/klipper/requirements.txt
+	touch $@
+
 $(BENCH)/ready: bench/requirements.txt
 	$(PYTHON) -m venv $(BENCH)
 	$(BENCH)/bin/python -m pip install --quiet --requirement bench/requirements.txt
+	touch $@
+
+$(BENCH)/peers: bench/peers.txt $(BENCH)/ready
+	$(BENCH)/bin/python -m pip install --quiet --requirement bench/peers.txt
 	touch $@
 
 $(READY): pyproject.toml setup.py

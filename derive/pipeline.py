@@ -17,6 +17,7 @@ from derive.cache import Cache, entry_key, key_of
 from derive.description.catalogue import Entry
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.remedies import with_remedy
+from derive.emit.around_c.package import br, klipper
 from derive.emit.c import package as c
 from derive.emit.fmu import package as fmu
 from derive.emit.javascript import package as javascript
@@ -35,7 +36,7 @@ _LOADED = [__name__, *(f"derive.{room}" for room in _ROOMS)]
 """The modules that deriving needs, which the processes have before they begin."""
 WRITTEN = (python.name, StructuredTextFiles.name)
 """The languages that are written unless others are asked for."""
-_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc, fmu)
+_OTHERS: tuple[Language, ...] = (javascript, c, linuxcnc, fmu, klipper, br)
 LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
 _TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
     language.name: language.title for language in _OTHERS

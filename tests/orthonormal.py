@@ -1,14 +1,20 @@
-"""Matrices that are rotations but for an error, and the rotation that is meant: by NumPy, from the definition alone."""
+"""Rotations, matrices that are rotations but for an error, and the rotation that is meant: by NumPy, by definition."""
 
 from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 ALLOWED, REFUSED = 0.9e-4, 1.1e-4
 """Errors on both sides of what is a rotation."""
+
+
+def rodrigues(axis: ArrayLike, angle: float) -> Array:
+    """The rotation about a unit vector by an angle in radians."""
+    cross = np.cross(np.eye(3), axis)
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
 
 
 def error(matrix: Array) -> float:

@@ -65,7 +65,7 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
     derived = derived_of(solution)
     if derived.searched is not None:
         where = f"Where {derived.where.given_name} is not 0, " if derived.where is not None else ""
-        yield f"{where}{derived.searched.name} is scanned for roots: a trial takes it as known."
+        yield f"{where}{derived.searched.name} is searched for roots: a trial takes it as known."
     for route in derived.inverse:
         yield from _route(derived.mechanism, route)
     yield from _branches(derived.mechanism)

@@ -29,7 +29,7 @@ class Branch:
 
     @property
     def is_crossing(self) -> bool:
-        """Whether it is a branch that tells the roots of a scan apart: its indicator is the slope of the residual."""
+        """Whether it is a branch that tells the roots of a search apart: its indicator is the slope of the residual."""
         return bool(self.indicator is sp.nan)
 
     @property
@@ -71,7 +71,7 @@ def branch(name: str, indicator: object, *, margin: str | None = None, **names: 
 
 
 def crossing(name: str, **names: int) -> Branch:
-    """A branch that tells the roots of a scan apart: whether the residual rises or falls with the joint at the root."""
+    """A branch that tells the roots of a search apart: whether the residual rises or falls with the joint there."""
     return branch(name, sp.nan, margin=None, **names)
 
 

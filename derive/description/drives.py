@@ -20,6 +20,7 @@ from derive.geometry.frames import Chain
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate
 
+_Nominal = dict[sp.Symbol, sp.Float]
 _OPEN = 0.02
 """The largest share of its length by which a loop may be open at nominal values."""
 
@@ -70,8 +71,8 @@ def with_loops(
     if not drives or any(joint.loops for joint in joints):
         return joints
     _refuse(joints, drives)
-    known = {j.symbol.name: _nominal(j) for j in joints} | {d.joint.symbol.name: _nominal(d.joint) for d in drives}
-    known |= {p.symbol.name: np.asarray(float(p.nominal)) for p in parameters}
+    known = {j.symbol: _nominal(j) for j in joints} | {d.joint.symbol: _nominal(d.joint) for d in drives}
+    known |= {p.symbol: sp.Float(p.nominal) for p in parameters}
     following = {d.by.symbol: d for d in drives}
     found = []
     for joint in joints:
@@ -101,11 +102,16 @@ def _refuse(joints: Sequence[Joint], drives: Sequence[Drive]) -> None:
             raise DescriptionError(f"joint {name!r} is driven by {by!r}, which is no joint of this mechanism")
 
 
-def _nominal(joint: Joint) -> np.ndarray:
-    return np.asarray(np.radians(joint.nominal) if joint.is_angle else joint.nominal)
+def _nominal(joint: Joint) -> sp.Float:
+    return sp.Float(np.radians(joint.nominal) if joint.is_angle else joint.nominal)
 
 
-def _loop(drive: Drive, known: dict[str, np.ndarray], actuator: Joint) -> Loop:
+def _number(value: sp.Expr, known: _Nominal) -> float:
+    """A value at nominal joints and parameters: by symbols, as a joint may have the name of a parameter."""
+    return float(evaluate(value.xreplace(known), {}))
+
+
+def _loop(drive: Drive, known: _Nominal, actuator: Joint) -> Loop:
     """The loop of a drive, with the sides of its nominal values; the actuator's own symbol is that of its motor."""
     table, name, ends = {actuator.symbol: actuator.motor}, drive.joint.name, (drive.start, drive.tip)
     turns, sides = (drive.joint.is_angle, drive.by.is_angle), (drive.side, drive.by_side)
@@ -114,12 +120,12 @@ def _loop(drive: Drive, known: dict[str, np.ndarray], actuator: Joint) -> Loop:
     for joint in (drive.joint, drive.by):
         if joint.symbol not in read:
             raise DescriptionError(f"the loop of joint {name!r} does not read {joint.name!r}")
-    if unknown := sorted(s.name for s in read - {DEGREE} if s.name not in known):
+    if unknown := sorted(s.name for s in read - {DEGREE} if s not in known):
         raise DescriptionError(
             f"the loop of joint {name!r} reads {unknown[0]!r}, which is not a joint or a parameter of this mechanism"
         )
     _refuse_open(drive, plain, known)
-    signs = [np.sign(float(evaluate(sp.diff(plain.equation, s), known))) for s in (plain.moved, plain.by)]
+    signs = [np.sign(_number(sp.diff(plain.equation, s), known)) for s in (plain.moved, plain.by)]
     if 0.0 in signs:
         raise DescriptionError(f"the loop of joint {name!r} is at a dead point with nominal values")
     moved, moving = (int(sign) * stated for sign, stated in zip(signs, sides, strict=True))
@@ -128,9 +134,9 @@ def _loop(drive: Drive, known: dict[str, np.ndarray], actuator: Joint) -> Loop:
     return replace(plain, by=by, sides=(moved, moving), start=start, tip=tip, length=plain.length.xreplace(table))
 
 
-def _refuse_open(drive: Drive, loop: Loop, known: dict[str, np.ndarray]) -> None:
-    distance = float(np.sqrt(evaluate(loop.vector.dot(loop.vector), known)))
-    length = float(evaluate(loop.length, known))
+def _refuse_open(drive: Drive, loop: Loop, known: _Nominal) -> None:
+    distance = _number(sp.sqrt(loop.vector.dot(loop.vector)), known)
+    length = _number(loop.length, known)
     if abs(distance - length) > _OPEN * max(distance, length):
         raise DescriptionError(
             f"the loop of joint {drive.joint.name!r} is open at the nominal values of {drive.joint.name} "

@@ -160,6 +160,11 @@ class Joint(Quantity):
         return real(f"ref_{self.key}")
 
     @property
+    def speed(self) -> sp.Symbol:
+        """The speed of the axis, in radians or the user's length unit per time."""
+        return real(f"speed_{self.key}")
+
+    @property
     def turn(self) -> sp.Symbol:
         """The commanded period number; 0: none is commanded."""
         return count(f"turn_{self.key}")

@@ -66,7 +66,7 @@ class Vendor(Enum):
 
 @dataclass(frozen=True)
 class Search:
-    """A joint that is scanned for roots where no subproblem determines it."""
+    """A joint that is searched for roots where no subproblem determines it."""
 
     joint: Joint
     where: Parameter | None = None

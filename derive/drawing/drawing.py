@@ -96,7 +96,7 @@ def _plane(task: Task) -> tuple[int, int] | None:
 
 
 def _without_search(kinematics: Kinematics, machine: Machine) -> Machine:
-    """The machine with a closed form, if there is one, without the branch of a root scan, which a picture cannot
+    """The machine with a closed form, if there is one, without the branch of a root search, which a picture cannot
     show."""
     search = kinematics.mechanism.search
     return (
@@ -157,9 +157,11 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
         if part or not drawn.is_zero or mechanism.chain is None:
             scale = part if mechanism.chain is None else 2.5 * part
             yield tuple(axis + (scale * angle if joint.axis_is_angle else 0.0) for joint, axis, angle in turned)
-    if mechanism.chain is None and not mechanism.is_platform:
+    if mechanism.drives or (mechanism.chain is None and not mechanism.is_platform):
         sampled = sample_axes(mechanism, dict(machine.values), _SAMPLED, seed=5)
-        rows = np.stack([np.round(sampled[j.axis.name], 1) for j in mechanism.joints], axis=1)
+        shown = zip(mechanism.joints, drawn.axes, strict=True)  # beside loops in its chain a machine is seen as before
+        columns = [sampled[j.axis.name] if j.loops or not mechanism.drives else np.full(_SAMPLED, a) for j, a in shown]
+        rows = np.round(np.stack(columns, axis=1), 1)
         yield from (tuple(row) for row in rows.tolist())
 
 

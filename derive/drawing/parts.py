@@ -17,6 +17,8 @@ from derive.drawing.loop import bars_of, is_held_by_parallelograms
 from derive.drawing.pins import pins_of
 from derive.equations.axes import joint_lets
 from derive.equations.choices import with_choices
+from derive.geometry.frames import Chain
+from derive.geometry.pose import pose_of
 from derive.ir.passes import normalise
 from derive.ir.program import Output, Program
 from derive.kinematics.kinematics import Kinematics
@@ -43,14 +45,55 @@ def parts_of(kinematics: Kinematics) -> Parts:
     mechanism = kinematics.mechanism
     values = _Values()
     shape = _chain(mechanism, values) if mechanism.chain is not None else _loop(mechanism, values)
+    return _named(kinematics, values, shape)
+
+
+def _named(kinematics: Kinematics, values: _Values, shape: dict[str, Any]) -> Parts:
+    """The parts, with a program that computes the values."""
     names = tuple(tuple(f"part_{i}_{k}" for k in range(len(value))) for i, value in enumerate(values.found))
     outputs = [
         Output(name, sp.sympify(entry))
         for row, value in zip(names, values.found, strict=True)
         for name, entry in zip(row, value, strict=True)
     ]
-    program = normalise("parts", joint_lets(mechanism), outputs)
+    program = normalise("parts", joint_lets(kinematics.mechanism), outputs)
     return Parts(with_choices(program, kinematics.parameters), names, shape)
+
+
+def links_of(kinematics: Kinematics) -> Parts:
+    """The links of a chain whose joints loops move, with levers and rods: every line is a rod of the shape."""
+    values, drawn = _Values(), _chain(kinematics.mechanism, pins := _Values())
+    chain = kinematics.mechanism.drawn or kinematics.mechanism.chain
+    assert chain is not None
+    poses = [pose_of(Chain(chain.factors[:k])) for k in range(len(chain.factors) + 1)]
+    rods = []
+
+    def line(start: Sequence[sp.Expr], end: Sequence[sp.Expr], joints: Sequence[str]) -> None:
+        rods.append({"start": values.point(start), "end": values.point(end), "joints": joints})
+
+    for factor, before, behind in zip(drawn["factors"], poses, poses[1:], strict=False):
+        line(before.position, behind.position, factor["joints"])
+    for loop in drawn.get("loops", ()):
+        here = poses[loop["at"]]
+        ends = [[here.position + here.rotation * sp.Matrix(pins.found[k]) for k in loop[w]] for w in ("start", "tip")]
+        for points in ends:
+            for start, end in zip(points, points[1:], strict=False):
+                line(start, end, ())
+        line(ends[0][-1], ends[1][-1], loop["joints"])
+    shape = {"rods": rods, "cranks": [], "rails": [], "carried": [], "plate": []}
+    return _named(kinematics, values, shape)
+
+
+def lines_of(shape: Mapping[str, Any]) -> tuple[tuple[int, int, str], ...]:
+    """The lines of a loop: the places of their ends, and the axes that drive them. They are arms (a point for one that
+    bars draw), ways of carriages, rods, and the plate as a star about the tool, whose place is -1.
+    """
+    cranks = shape["cranks"]
+    arms = [(c["centre"], end if c["isHeld"] else c["centre"], c["joint"]) for c in cranks for end in c["ends"]]
+    ways = [(rail["origin"], rail["at"], rail["joint"]) for rail in shape["rails"]]
+    rods = [(rod["start"], rod["end"], " ".join(rod["joints"])) for rod in shape["rods"]]
+    carried = " ".join(part["joint"] for part in shape["carried"])
+    return (*arms, *ways, *rods, *((place, -1, carried) for place in shape["plate"]))
 
 
 @dataclass

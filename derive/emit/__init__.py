@@ -2,12 +2,13 @@
 
 It may import the folders from `ir` to `drawing`. No other folder knows a language, except `view`. Its own folders form
 layers, each of which may import those before it: first `c`, `javascript`, `plcopen` and `picture`, then `python`, then
-`st`, `linuxcnc` and `fmu`, then `softmotion`, then `page`.
+`st`, `linuxcnc`, `fmu` and `around_c`, then `softmotion`, then `page`.
 
 What is the same for every mechanism stands in `runtime/`, in a folder for each language: it is copied, and reads the
 constants of the compiler from one file that the language writes. `runtime/native` has the extension module that joins
 the C of machines with Python.
 
+around_c/: controllers that take C with a file around it
 braced: how C and JavaScript spell expressions and statements; indents, blocks, long statements broken into lines
 c/: C99
 every_branch: all branches of the inverse as one straight line, for Python and C

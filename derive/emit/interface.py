@@ -28,6 +28,7 @@ def rotation_of(prefix: str = "") -> tuple[Shape, ...]:
 
 POSITION: tuple[Shape, ...] = ("x", "y", "z")
 ROTATION = rotation_of()
+BIAS = "The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."
 POSE: Arrays = (("position", POSITION), ("rotation", ROTATION))
 
 
@@ -81,6 +82,11 @@ def axes_of(kin: Kinematics) -> Arrays:
     return (("axes", tuple(j.axis.name for j in kin.mechanism.joints)),)
 
 
+def speeds_of(kin: Kinematics) -> Arrays:
+    """The array of the speeds of the axes."""
+    return (("speeds", tuple(j.speed.name for j in kin.mechanism.joints)),)
+
+
 def margins_of(kin: Kinematics) -> Arrays:
     """The array of the signed margins of the branches."""
     return (("margins", tuple(f"branch_{b.name}" for b in kin.branches)),)
@@ -122,6 +128,8 @@ def _entries(kin: Kinematics) -> Iterator[Entry]:
     yield Entry("singularity", text, kin.singularity, axes, (("margins", tuple(m.name for m in kin.margins)),))
     rows = (("rows", matrix_of(kin, len(kin.rows))),)
     yield Entry("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, axes, rows)
+    accelerations = (("accelerations", tuple(o.name for o in kin.bias.outputs)),)
+    yield Entry("bias", BIAS, kin.bias, (*axes, *speeds_of(kin)), accelerations)
     if kin.limited:
         values = [value_of(quantity) for quantity in kin.limited]
         program = normalise("quantities", kin.limits.lets(), [Output(v.name, v) for v in values])

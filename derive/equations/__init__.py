@@ -13,6 +13,7 @@ conditions: values of parameters that must not vanish where the derivation is to
 drives: joints that loops move: from the motor to the joint and back
 known_turns: rotations that are known: their matrices, and names for their entries
 limits: the test of the limits
+machine_checks: checks of a derivation that parameters alone decide
 named_pose: the pose of a spatial chain, with a name for every entry of every frame
 pitch/: arms whose last turns alone follow the commanded rotation
 positions: the equations of the commanded position for the joints that are still unknown

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 import sympy as sp
 
 from derive.description.mechanism import Constraint, Mechanism
 from derive.equations.closures.fixed_names import fixed_lets
+from derive.equations.machine_checks import with_constraints
 from derive.ir.constants import DEGREE, SHORTEST_LINK
 
 
@@ -26,7 +26,7 @@ def with_conditions(mechanism: Mechanism, values: Iterable[sp.Expr]) -> Mechanis
         words = str(shown.xreplace({DEGREE: sp.Integer(1)})).replace("*", " ")
         message = f"{words} must not be 0: parallel slides"
         found.append(Constraint(sp.Gt(sp.Abs(shown), SHORTEST_LINK * largest), message))
-    return replace(mechanism, constraints=(*mechanism.constraints, *found)) if found else mechanism
+    return with_constraints(mechanism, found)
 
 
 def _is_turn(value: sp.Basic) -> bool:

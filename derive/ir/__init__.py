@@ -3,8 +3,8 @@
 It may import `kept` and `work`, and no folder. `cells` and `roots` are also the text of two modules of the Python
 package.
 
-cells: the cells of a root scan, on arrays: how many roots a cell may hold, and where it is cut
-constants: the numerical constants of the product, except those of the root scan
+cells: the cells of a root search, on arrays: how many roots a cell may hold, and where it is cut
+constants: the numerical constants of the product, except those of the root search
 graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted

@@ -32,6 +32,8 @@ EXACT_ROTATION = sp.Float("1e-12")
 SURE_ROTATION = sp.Float("1e-13")
 """A matrix that misses x x = y y = 1, x y = 0 and z = x × y by no more than this is nearer to a rotation than
 `EXACT_ROTATION`."""
+SAME_ROTATION = sp.Float("1e-6")
+"""A commanded rotation is reached where the angle to it is at most this many radians: that is rounding."""
 LEAST = sp.Float("1e-12")
 """A length or a ratio that may not be zero is refused at this size or less, so that products of such numbers, and
 their reciprocals, stay finite."""
@@ -54,10 +56,10 @@ reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where the error of every length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
-"""A root of a scan counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
+"""A root of a search counts as on a branch where its scaled margin has the wrong sign by no more than this, which is
 the square root of `BOUNDARY`."""
 MET = sp.Float("1e-10")
-"""A root of a scan meets the pose where its error is at most this share of the machine's scale, and at most this
+"""A root of a search meets the pose where its error is at most this share of the machine's scale, and at most this
 many radians."""
 DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""

@@ -37,6 +37,12 @@ class Atan2(sp.Function):
 
     nargs = 2
 
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """The derivative; zero if both arguments are zero."""
+        y, x = self.args
+        square = y**2 + x**2
+        return (x if argindex == 1 else -y) / Select(sp.Gt(square, 0), square, sp.Integer(1))
+
 
 class Select(sp.Function):
     """select(condition, a, b): a where the condition holds, else b; both are evaluated."""
@@ -74,6 +80,10 @@ class Wrap(sp.Function):
 
     nargs = 1
     is_real = True
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """The derivative."""
+        return _ONE
 
 
 class NearestPeriod(sp.Function):

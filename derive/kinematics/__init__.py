@@ -3,6 +3,7 @@
 It may import the folders from `ir` to `optimize`. For a branch, `sigma_elbow` = +1, a positive `branch_elbow` and
 configuration byte 1 mean the same.
 
+bias: the acceleration of the frame at constant speeds of the axes
 branches/: the step of the derivation that decides each branch
 build: from a description to all programs
 bundle: all programs lowered together and checked, with constants moved into the setup
@@ -16,9 +17,10 @@ lost_digits/: where a closed form has lost digits, steps on the closure meet the
 margins: the singularity margins of a machine that is solved in closed form
 measured/: the programs of a serial machine that has its deviations as inputs
 parameters: all inputs of a machine, and the setup program
+rates: forward-mode differentiation of statements
 refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build; how often home finds a pose again
-scan/: a mechanism with a root scan along one joint
+scan/: a mechanism with a root search along one joint
 shared_names: where an input has the name of a derived value, the mechanism is derived again with another name
 solution: what is solved of a machine before programs are made, in the one order of the preparations
 """

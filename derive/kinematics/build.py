@@ -15,8 +15,9 @@ from derive.equations.axes import Forward, finite
 from derive.equations.limits import limits_program
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.program import Let, Output, Program, Statement, shared
+from derive.ir.program import Let, Output, Program, Statement
 from derive.ir.symbols import OFFSET, real
+from derive.kinematics.bias import bias_programs
 from derive.kinematics.branches.assembly import Assembled, assembly_checks, bound_checks, mirror_checks
 from derive.kinematics.branches.assignment import Assignment, assign, margin_lets, with_branch_signs
 from derive.kinematics.bundle import bundle_of
@@ -33,9 +34,10 @@ from derive.kinematics.measured.programs import Measured, measured_programs
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
 from derive.kinematics.sampling import sample_machine, with_share
-from derive.kinematics.scan.derivations import Scanned, from_joints
-from derive.kinematics.scan.inverse import branch_statements, search_given, search_of
+from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_branch
+from derive.kinematics.scan.inverse import branch_statements, search_given
 from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
+from derive.kinematics.scan.programs import GOAL
 from derive.kinematics.shared_names import SharedName, refuse_names, refuse_shared_names, with_free_names
 from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
@@ -93,6 +95,7 @@ def _closed_form(solved: Solved) -> Kinematics:
     programs += _further_programs(mechanism, closed, inverse)
     if mechanism.nominal:
         programs = measured_programs(Measured(mechanism, machine, forward_only, margins, doubts), programs)
+    programs += bias_programs(mechanism, programs, forward)
     return bundle_of(solved, programs, kept, at_home)
 
 
@@ -122,11 +125,12 @@ def _samples(
 
 
 def _scanned(both: Scanned) -> Kinematics:
-    """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is scanned,
-    and the determinant of the Jacobian is the margin.
+    """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is
+    searched, and the determinant of the Jacobian is the margin.
     """
     mechanism = both.mechanism
-    refuse_names(mechanism, (name for p in shared([search_of(both)]) for name in p.bound()))
+    refuse_names(mechanism, (*GOAL.values(), *(s.name for s in trial_on_branch(both).statements)))
+    refuse_shared_names(mechanism, branch_statements(both))
     statements, margins = margin_statements(both)
     determinant, scaled = determinant_margin(both)
     margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)
@@ -145,6 +149,7 @@ def _scanned(both: Scanned) -> Kinematics:
         projection_program(mechanism),
         *([twist_program(mechanism, both.forward)] if needs_twist(mechanism) else []),
     ]
+    programs += bias_programs(mechanism, programs, both.forward)
     finished = bundle_of(both, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
     return replace(finished, tried_branches=len(both.trial_branches))
 

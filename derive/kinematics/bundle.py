@@ -95,6 +95,7 @@ def bundle_of(
         limits=finished["limits"],
         singularity=finished["singularity"],
         jacobian=finished["jacobian"],
+        bias=finished["bias"],
         image=finished["image"],
         projection=finished.get("projection"),
         offset_branch=finished.get("offset_branch"),
@@ -107,6 +108,7 @@ def bundle_of(
         search_given=finished.get("search_given"),
         from_joints=finished.get("from_joints"),
         twist=finished.get("twist"),
+        twist_bias=finished.get("twist_bias"),
         compatible=finished.get("compatible"),
         end_point_shift=finished.get("end_point_shift"),
         total_image=finished.get("total_image"),
@@ -120,7 +122,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {branch_sign(b.name).name for b in mechanism.branches}
     allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
-    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
+    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.speed, j.reference, j.turn)}
     allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -19,10 +20,11 @@ from derive.geometry.pose import Screw, pose_of
 from derive.ir.constants import FREE_ANGLE
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select
-from derive.ir.program import Let, Output, Program, Require, Solve, Statement, Status
+from derive.ir.program import Call, Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, DETERMINANT, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
-from derive.plate.legs import RADIUS, Leg, legs_of, names, rotation_axes, rotation_of, rows
+from derive.plate.legs import RADIUS, Leg, leg_symbol, legs_of, names, rotation_axes, rotation_of, rows
+from derive.plate.newton import legs_at_pose
 from derive.work import stage
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
@@ -250,10 +252,44 @@ def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
+    statements, twists = _platform_twists(mechanism, motors)
+    return statements, _of_the_task(mechanism, twists, motors.cols)
+
+
+def platform_velocities(
+    mechanism: Mechanism, forward: Forward
+) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr], list[sp.Expr]]:
+    """The statements for the velocity of a platform from the speeds of its axes, the rates of its pose, and those of
+    the task. The rows of A are made of the pose that was found, so that they can be differentiated.
+    """
+    lines = legs_at_pose(mechanism)
+    bound = {let.name for let in lines}
+    found = (
+        replace(s, names=tuple(n for n in s.names if n not in bound)) if isinstance(s, Call) else s
+        for s in forward.statements
+    )
+    speeds = _motor_matrix(mechanism) * sp.Matrix([j.speed for j in mechanism.joints])
+    solved, twists = _platform_twists(mechanism, speeds)
+    position = mechanism.motion.position
+    turning = dict(zip(rotation_axes(mechanism), twists[len(position) :], strict=True))
+    spin = sp.Matrix([turning.get(c, sp.Integer(0)) for c in COORDINATE_NAMES])
+    rotation = rotation_of(mechanism)
+    turned = sp.Matrix.hstack(*[spin.cross(rotation.col(k)) for k in range(3)])
+    rates = zip((*map(real, position), *rotation), (*twists[: len(position)], *turned), strict=True)
+    moving = {name: rate for name, rate in rates if name.is_Symbol}
+    joints = [j.symbol for j in mechanism.joints]
+    for rod in mechanism.rods:  # its length is what its joint says: it is never too short at a pose that was found
+        (changed,) = sp.Matrix([with_fixed_names(mechanism, rod.length)]).jacobian(joints) * speeds
+        moving |= {leg_symbol("divisor", rod): changed} if changed != 0 else {}
+    return (*found, *lines, *solved), moving, _of_the_task(mechanism, twists, 1)
+
+
+def _platform_twists(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The twists of the platform, by rows: a column for each column of the motors."""
     joints = [j.symbol for j in mechanism.joints]
     driven = sp.Matrix([_driven(mechanism, leg).jacobian(joints) for leg in legs_of(mechanism)]) * motors
     lets, named = named_trigonometry(mechanism, list(driven))
-    width, shifts = len(joints), len(mechanism.motion.position)
+    width, shifts = motors.cols, len(mechanism.motion.position)
     words = (*(f"v{c}" for c in mechanism.motion.position), *(f"w{c}" for c in rotation_axes(mechanism)))
     entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, reason=about_machine(Why.UNCONTROLLED))
@@ -261,14 +297,14 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
         tuple(entries), rows(mechanism), tuple(named), None, "twist of the platform per velocity of each axis"
     )
     values = [e if k // width < shifts else e / RADIUS for k, e in enumerate(entries)]
-    return (held, *fixed_lets(mechanism), *lets, system), _of_the_task(mechanism, values)
+    return (held, *fixed_lets(mechanism), *lets, system), values
 
 
-def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr]) -> list[sp.Expr]:
+def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr], width: int) -> list[sp.Expr]:
     """The rows of the task, made from those of the platform: commanded coordinates, and tilts about the tool's axes."""
     if not mechanism.passive:
         return twists
-    width, position = len(mechanism.joints), mechanism.motion.position
+    position = mechanism.motion.position
     matrix = sp.Matrix(len(twists) // width, width, twists)
     spin = matrix[len(position) :, :]
     if mechanism.task.turning is Turning.DIRECTION:

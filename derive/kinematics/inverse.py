@@ -27,6 +27,7 @@ from derive.equations.closures.fixed_names import (
     signs_of,
     with_fixed_names,
 )
+from derive.equations.machine_checks import MachineCheck, apart
 from derive.equations.pitch.equations import with_refusal
 from derive.equations.pitch.heading import free_heading, free_value
 from derive.equations.problem import Problem
@@ -40,7 +41,6 @@ from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.scan.guards import without_wrist
-from derive.kinematics.scan.machine_checks import MachineCheck, apart
 from derive.lowering.passes import DERIVED, NOTHING, applied
 from derive.plate.passive import commanded, passive_statements, renamed_in
 from derive.solver.solve import Derivation, solve
@@ -58,7 +58,10 @@ class Inverse:
     moving: tuple[Joint, ...]
     frozen: tuple[Joint, ...] = ()
     checks: tuple[MachineCheck, ...] = ()
-    """The checks of a trial on the machine, which do not depend on the pose."""
+    """The checks on the machine, which do not depend on the pose."""
+    free: tuple[Let, ...] = ()
+    """The first statements of the derivation: a joint that the direction of the tool determines where the position
+    does not. They read the signs of steps."""
 
     @property
     def known(self) -> tuple[Statement, ...]:
@@ -76,13 +79,16 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure, held = pose_closure(mechanism), mechanism.held_joints
     derivation = _solve(mechanism, closure, mechanism.solved_joints)
+    free: tuple[Let, ...] = ()
     if mechanism.followed_turns:
-        lets, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
-        derivation = replace(derivation, statements=(*lets, *with_refusal(derivation.statements)))
+        free, _ = free_heading(mechanism, tuple(step.step for step in derivation.determinants))
+        derivation = replace(derivation, statements=(*free, *with_refusal(derivation.statements)))
     kept = tuple(s for j in held for s in frozen_lets(j))
     before = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *_heading(mechanism))
     naming = (*before, *passive_statements(mechanism), *closure.lets)
-    return Inverse(closure, derivation, naming, mechanism.solved_joints, held)
+    statements, checks = apart(derivation.statements, fixed_names(mechanism))
+    derivation = replace(derivation, statements=statements)
+    return Inverse(closure, derivation, naming, mechanism.solved_joints, held, checks, free)
 
 
 def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:

@@ -60,7 +60,7 @@ class Inverted:
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
-    """With a root scan: the number of solutions that no slot held, and the number of all solutions."""
+    """With a root search: the number of solutions that no slot held, and the number of all solutions."""
 
 
 @dataclass(frozen=True)
@@ -111,19 +111,22 @@ class Kinematics:
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*: one branch, with periods, without
                      limits
-    search_given     as branch → the arguments of the root scan of that branch; None if there is a closed form
-    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root scan
+    search_given     as branch → the arguments of the root search of that branch; None if there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None without a root search
     derived_branch   as branch, step by step as it was derived; the optimiser unrolls it
     limits           axis_* → no outputs; its conditions are the axis limits and the limits of coupled quantities
     singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; and the length
                      of a margin that has one
     jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
+    bias             axis_*, speed_* → bias_x … bias_turn_z, one for each of `rows`: the acceleration where the axes
+                     keep these speeds (radians or lengths per time), J' q'
     image            no inputs → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
     projection       r11…r33 → the nearest rotation that the flange can take; None if the task has no rotation
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None without the offset interface
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
     twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where `jacobian` has all six, and
                      where the flange keeps its orientation: then the rows that it lacks are zero
+    twist_bias       as bias, of all six rows; None where `twist` is
 
     For an orientation kinematics, None for any other. The flange under it turns about the axis flange_axis_* in the
     frame of the flange, base_axis_* in that of the machine; both are zero for a flange that turns freely:
@@ -148,6 +151,7 @@ class Kinematics:
     limits: Program
     singularity: Program
     jacobian: Program
+    bias: Program
     image: Program
     projection: Program | None
     offset_branch: Program | None
@@ -161,9 +165,10 @@ class Kinematics:
     search_given: Program | None = None
     from_joints: Program | None = None
     tried_branches: int = 0
-    """With a root scan: the number of first branches that are signs of the steps of a trial; the others tell roots
+    """With a root search: the number of first branches that are signs of the steps of a trial; the others tell roots
     apart."""
     twist: Program | None = None
+    twist_bias: Program | None = None
     compatible: Program | None = None
     end_point_shift: Program | None = None
     total_image: Program | None = None
@@ -185,7 +190,7 @@ class Kinematics:
         """All programs except `setup` and the shared ones."""
         found = (
             self.forward, self.orientation, self.branch, self.limits, self.singularity,
-            self.jacobian,
+            self.jacobian, self.bias,
             self.image, self.projection, self.offset_branch, self.offset_configuration,
         )  # fmt: skip
         return tuple(program for program in found if program is not None)

@@ -10,8 +10,10 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism, Role, Turning
+from derive.equations.axes import axes_of_drives
 from derive.ir.interpret import evaluate, run
-from derive.ir.program import Program, Status
+from derive.ir.passes import normalise
+from derive.ir.program import Output, Program, Status
 from derive.ir.symbols import CHECK_FORWARD, SCALE, branch_sign
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import has_length, machine_parameters, machine_scale, unlimited_values
@@ -21,6 +23,8 @@ Samples = dict[str, NDArray[np.float64]]
 ENOUGH = 16
 """The number of possible poses from which a sign or an exponent is determined."""
 _MANY = 1024
+_JOINTS = 8
+"""The values of a joint that are drawn for each one of its actuator: its loops close at some of them."""
 _SHARES = (1.0, 0.5, 0.25, 0.1)
 """The shares of the ranges from which further poses are drawn."""
 
@@ -84,20 +88,43 @@ def _first(values: NDArray[np.float64]) -> float:
     return float(np.ravel(values)[0])
 
 
-def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0) -> Samples:
-    """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes.
+def sample_axes(
+    mechanism: Mechanism, machine: Samples, count: int, seed: int, share: float = 1.0, otherwise: float = 1.0
+) -> Samples:
+    """Axis values over the whole ranges of the joints, as arrays; the references are equal to the axes. An axis that
+    moves a joint by loops has values at which these close.
 
     Those of a machine with the limits of its description are inside them. share: of the ranges, around the nominal
-    values of the joints.
+    values of the joints; otherwise: the size of a machine without any length.
     """
+    size = size_of(mechanism, machine, otherwise)
     generator = np.random.default_rng(seed)
     values: Samples = {}
     for joint in mechanism.joints:
-        turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared and joint.is_angle else 1.0
-        low, high = _inside_limits(joint, machine, _range_of(joint, size_of(mechanism, machine)), 1.0 / turns)
-        drawn = joint.nominal + share * (generator.uniform(low, high, count) / turns - joint.nominal)
+        if joint.loops:
+            motor = _closing(mechanism, machine, joint, count, generator)
+        else:
+            turns = abs(float(evaluate(joint.ratio, machine))) if joint.is_geared and joint.is_angle else 1.0
+            low, high = _inside_limits(joint, machine, _range_of(joint, size), 1.0 / turns)
+            motor = generator.uniform(low, high, count) / turns
+        drawn = joint.nominal + share * (motor - joint.nominal)
         values[joint.axis.name] = values[joint.reference.name] = drawn + float(machine[joint.offset.name])
     return values
+
+
+def _closing(
+    mechanism: Mechanism, machine: Samples, joint: Joint, count: int, generator: np.random.Generator
+) -> NDArray[np.float64]:
+    """Values of an actuator, without its offset, at which its loops close: those of random values of the joint."""
+    others = {j.axis for j in mechanism.joints if j != joint}
+    program = normalise("closing", axes_of_drives(mechanism, others), (Output(joint.axis.name, joint.axis),))
+    size = np.pi if joint.is_angle else size_of(mechanism, machine)
+    joints = generator.uniform(-size, size, _JOINTS * count)
+    found, status = run(program, {**machine, joint.symbol.name: joints})
+    motors = found[joint.axis.name] - float(machine[joint.offset.name])
+    low, high = _inside_limits(joint, machine, (-np.inf, np.inf), 1.0)
+    closed = motors[(status == Status.OK) & (motors >= low) & (motors <= high)]
+    return np.resize(closed if closed.size else np.array([joint.nominal]), count)
 
 
 def _inside_limits(joint: Joint, machine: Samples, values: tuple[float, float], unit: float) -> tuple[float, float]:
@@ -116,9 +143,6 @@ def _inside_limits(joint: Joint, machine: Samples, values: tuple[float, float], 
 
 def _range_of(joint: Joint, size: float) -> tuple[float, float]:
     """The values of a joint that are tried: of a slide those up to once or twice the size of the machine."""
-    if joint.loops:
-        low, high = joint.limits or ((-90.0, 90.0) if joint.in_degrees else (-joint.nominal / 2, joint.nominal / 2))
-        return (low, high) if joint.limits else (low + joint.nominal, high + joint.nominal)
     if joint.is_angle:
         low, high = joint.domain or (-180.0, 180.0)
         return low, min(high, 1e3)

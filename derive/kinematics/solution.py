@@ -14,6 +14,7 @@ from derive.description.mechanism import DescriptionError, Joint, Mechanism, Tur
 from derive.equations.chain_splits import is_spatial
 from derive.equations.conditions import with_conditions
 from derive.equations.drives import size, slopes
+from derive.equations.machine_checks import with_checks
 from derive.equations.pitch.chain import followed_of
 from derive.equations.problem import Conditioning
 from derive.form.machine import in_form
@@ -95,7 +96,7 @@ def solve_machine(mechanism: Mechanism) -> Solution:
     mechanism = with_derived_assembly(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     inverse = solve_pose(mechanism)
-    mechanism = with_conditions(mechanism, inverse.derivation.conditions)
+    mechanism = with_conditions(with_checks(mechanism, inverse.checks), inverse.derivation.conditions)
     refuse_shared_names(mechanism, (*closed.forward.statements, *inverse.naming, *inverse.derivation.statements))
     mechanism = with_derived_branches(mechanism, inverse, closed.forward)
     return Solved(mechanism, closed, inverse, assign(mechanism, inverse, closed.forward))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Plane, Turning
 from derive.equations.axes import Forward, finite, joint_lets
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
 from derive.equations.trigonometry import named_trigonometry
@@ -288,6 +288,22 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         error = ahead - next(values)
         lets.append(Let(leg_symbol("error", plane), error, f"distance of guide {plane.name} from its plane"))
     return tuple(lets)
+
+
+def legs_at_pose(mechanism: Mechanism) -> tuple[Let, ...]:
+    """The legs as lines, the rows of A, at a pose at which every leg has its length."""
+    lets, ends = _bases(mechanism)
+    values, found = iter(ends), [*lets]
+    for leg in legs_of(mechanism):
+        arm = names("arm", leg)
+        found += turned(rotation_of(mechanism), point_of(leg), arm)
+        if isinstance(leg, Plane):
+            found += plane_row(mechanism, leg, arm)
+            continue
+        base, measured = [next(values) for _ in leg.base], next(values)
+        word = vector_word(mechanism, leg)
+        found += [*span(leg, position_of(mechanism), arm, base, word), *row(mechanism, leg, arm, measured, word)]
+    return tuple(found)
 
 
 def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:

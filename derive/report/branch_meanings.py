@@ -98,8 +98,8 @@ def pair_at_one_frame(kinematics: Kinematics, index: int) -> tuple[Reals, Reals]
 
 
 def _first_pair(machine: Machine, index: int, candidates: Sequence[Reals]) -> tuple[Reals, Reals] | None:
-    """The pair of the first candidate that has one. All are solved in one run: a root scan takes as many passes for one
-    row as for all.
+    """The pair of the first candidate that has one. All are solved in one run: a root search takes as many passes for
+    one row as for all.
     """
     count = len(machine.kinematics.branches)
     regular = [

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import operator
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
 import sympy as sp
+from sympy.logic.boolalg import Boolean
 
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir.constants import DEGREE
@@ -221,8 +222,32 @@ def _statement(statement: Statement, repeats: Repeats | None = None) -> Cost:
     one_pass = _total(_given(s) if isinstance(s, Call) else _statement(s) for s in statement.step) + _total(
         map(expression_cost, (statement.done, *statement.following))
     )
-    runs = _total(_runs(call, passes, repeats) for call in calls)
+    ways = _run_together(statement) if repeats is None else [[calls]]
+    most = [_most(*(_total(_runs(call, passes, repeats) for call in some) for some in way)) for way in ways]
+    runs = min(most, key=lambda cost: sum(cost.counts))
     return _total(map(expression_cost, statement.start)) + one_pass * passes + runs
+
+
+def _run_together(loop: Iterate) -> Iterator[list[tuple[Call, ...]]]:
+    """The calls that one pass may run, in several ways: all; or those for each value of a state that they ask for."""
+    yield [loop.calls()]
+    flags = [s for s in loop.step if isinstance(s, Let) and isinstance(s.value, Boolean)]
+    conditions = (*(s.value for s in flags), *(call.wanted for call in loop.calls()))
+    tests = {t for c in conditions for t in c.atoms(sp.Eq) if t.lhs in loop.state and t.rhs.is_Integer}
+    for name in sorted({t.lhs for t in tests}, key=str):
+        own = sorted((t for t in tests if t.lhs == name), key=sp.default_sort_key)
+        yield [
+            _wanted_where(loop, flags, {t: sp.true if t == holds else sp.false for t in own}) for holds in (None, *own)
+        ]
+
+
+def _wanted_where(loop: Iterate, flags: Sequence[Let], known: Mapping[sp.Basic, sp.Basic]) -> tuple[Call, ...]:
+    """The calls that a pass may run where the truth of some conditions is known."""
+    table = dict(known)
+    for let in flags:
+        if let.value.xreplace(table) == sp.false:
+            table[let.name] = sp.false
+    return tuple(call for call in loop.calls() if call.wanted.xreplace(table) != sp.false)
 
 
 def _given(call: Call) -> Cost:

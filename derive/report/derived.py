@@ -106,7 +106,7 @@ class Derived:
     """The formulas of the margins."""
     searched: Joint | None = None
     where: Parameter | None = None
-    """The parameter at whose zero no root scan is needed."""
+    """The parameter at whose zero no root search is needed."""
 
 
 def derived_of(solution: Solution) -> Derived:
@@ -138,7 +138,7 @@ def _route(title: str, inverse: Inverse, assignments: Sequence[Assignment]) -> R
         derivation, {a.determinant.sigma: a.orientation * a.factor for a in assignments}, assignments
     )
     left = tuple(explained.signed(r) for r in derivation.residuals)
-    known = (*inverse.naming, *signs)
+    known = (*inverse.naming, *signs, *(rewritten(let, explained.signed) for let in inverse.free))
     equations = tuple(_recorded(e, derivation) for e in inverse.closure.equations)
     return Route(title, equations, known, explained.steps(), inverse.frozen, left, tuple(assignments))
 

@@ -17,7 +17,6 @@ from derive.ir.constants import LARGEST, SINGULAR
 from derive.ir.interpret import Array
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Bytes, Called, Case, Kinematics, Reals, SelfTest
-from derive.kinematics.parameters import has_length
 from derive.kinematics.sampling import sample_axes
 from derive.report.cost import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
@@ -38,7 +37,7 @@ _AWAY = 0.02
 _TOO_SHORT = 0.2
 """Legs whose lengths are multiplied by this do not reach the platform."""
 _SIZE = 100.0
-"""The range of linear axes in a machine without lengths."""
+"""The range of linear axes in a machine without any length."""
 _DECIMALS = 6
 """Those of the limits and offsets of a usual machine."""
 _NO_ROTATION = 1.1
@@ -133,7 +132,7 @@ class _Vectors:
         """
         if not self._regular:
             raise DescriptionError("no sampled pose is regular: check the nominal values of parameters and joints")
-        poses = self._regular[: 1 if self._mechanism.search else _TRIED]  # to compare poses, a root scan takes long
+        poses = self._regular[: 1 if self._mechanism.search else _TRIED]  # to compare poses, a root search takes long
         solutions = [sum(status is Status.OK for status in self._statuses(axes)) for axes in poses]
         best = poses[int(np.argmax(solutions))]
         return (best, *[axes for axes in self._regular if axes != best][: _SHOWN - 1])
@@ -190,7 +189,7 @@ class _Vectors:
         return list(branches(self.machine, frame, every, self._aside(axes))[2])
 
     def _branches(self) -> Iterator[Case]:
-        """The first pose with its own configuration, and on every branch without turns; a root scan
+        """The first pose with its own configuration, and on every branch without turns; a root search
         that fails is long.
         """
         axes, frame = self.poses[0], self.frames[0]
@@ -299,8 +298,8 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
         near = home * (1.0 + _AWAY * np.random.default_rng(3).uniform(-1.0, 1.0, (_TRIED, len(home))))
         drawn = np.vstack([near, _TOO_SHORT * home])
     elif mechanism.joints:
-        samples = sample_axes(mechanism, dict(machine.values), count, 3, share)
-        drawn = np.stack([samples[j.axis.name] * _stretch(machine, j) for j in mechanism.joints], axis=1)
+        samples = sample_axes(mechanism, dict(machine.values), count, 3, share, _SIZE)
+        drawn = np.stack([samples[j.axis.name] * _turns(j) for j in mechanism.joints], axis=1)
     else:
         return [()]
     angles = [j.axis_is_angle for j in mechanism.joints]
@@ -312,8 +311,6 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
     ]
 
 
-def _stretch(machine: Machine, joint: Joint) -> float:
-    """The range of an axis: several turns where it has them; a default for a machine without lengths."""
-    if joint.axis_is_angle:
-        return 2.0 if joint.multi_turn else 1.0
-    return 1.0 if has_length(machine.kinematics.mechanism) else _SIZE
+def _turns(joint: Joint) -> float:
+    """By how much the range of an axis is wider: several turns where it has them."""
+    return 2.0 if joint.axis_is_angle and joint.multi_turn else 1.0

@@ -18,7 +18,7 @@ from derive.kinematics.sampling import sample_axes, size_of
 from derive.report.reference_calls import FRAME, Machine, are_inside
 
 _POINTS, _MANY_SLOTS, _SEARCHED = 96, 36, 20
-"""The points along a side: for few solutions, for more than `_FEW` branches, for a machine with a root scan."""
+"""The points along a side: for few solutions, for more than `_FEW` branches, for a machine with a root search."""
 _FEW = 8
 _SAMPLES, _SEED = 2000, 9
 _SHARE, _ROOM = (2.0, 98.0), 0.15

@@ -14,7 +14,7 @@ frames: the frames of a chain, multiplied out factor by factor; CasADi functions
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing; the assembly mode of a platform
 orientation: the check of the orientations that a flange can have
-planted: poses close to where branches of a root scan meet
+planted: poses close to where branches of a root search meet
 roots: all solutions of the closure for a pose, from many starts
 samples: machines and regular poses, drawn from a fixed seed
 """
@@ -25,7 +25,7 @@ import math
 
 from derive.description.mechanism import Mechanism
 from derive.kinematics.kinematics import Evidence, Inverted, Kinematics
-from derive.witness.checks import check_forward, check_jacobian, check_margins, check_signs
+from derive.witness.checks import check_bias, check_forward, check_jacobian, check_margins, check_signs
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.exact.proof import check_exactly
@@ -52,6 +52,7 @@ def witness(kin: Kinematics, described: Mechanism) -> Evidence:
         samples = regular_samples(kin, closure)
         forward = check_forward(kin, closure, samples)
         jacobian = check_jacobian(kin, closure, samples)
+        check_bias(kin, closure, samples)
         if described.nominal is None:
             forward = max(forward, check_orientation(kin, samples))
             check_margins(kin, closure, samples)

@@ -6,6 +6,8 @@ Errors are dimensionless: angles in radians, lengths in reaches of the machine.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,7 +16,7 @@ from derive.ir.program import Program, Status
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import POSE, Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.samples import Samples, describe
+from derive.witness.samples import SEED, Samples, describe, moved_by_axes, solved_for_pose
 
 CLOSURE_TOLERANCE = 1e-12
 JACOBIAN_TOLERANCE = 1e-10
@@ -114,6 +116,25 @@ def check_jacobian(kin: Kinematics, closure: Closure, samples: Samples) -> float
     sizes = np.max(np.abs(samples.jacobian), axis=2, keepdims=True)
     errors = np.max(np.abs(derived - samples.jacobian) / sizes, axis=(1, 2))
     return worst(kin, "Jacobian", errors, samples, JACOBIAN_TOLERANCE, samples.pose_ease)
+
+
+def check_bias(kin: Kinematics, closure: Closure, samples: Samples) -> float:
+    """The acceleration at constant speeds of the axes equals that of the closure, relative to its largest row.
+
+    A further rate of A w + B q' = 0 is A w' + drift = 0.
+    """
+    speeds = np.random.default_rng(SEED + 4).uniform(-1.0, 1.0, samples.axes.shape)
+    speeds *= closure.axis_scale(samples.reach) / closure.axis_scale(np.ones(len(samples)))
+    named = {j.speed.name: speeds[:, i] for i, j in enumerate(kin.mechanism.joints)}
+    outputs = run_regular(kin, kin.bias, replace(samples, values=samples.values | named))
+    rates = (moved_by_axes(closure, samples) @ speeds[:, :, None])[:, :, 0]
+    drift = closure.drift(samples.axes, samples.pose, samples.parameters, speeds, rates)
+    units = closure.row_scale(samples.reach)[:, : len(closure.task)]
+    expected = solved_for_pose(closure, samples, drift)[:, : len(closure.task), 0] / units
+    derived = np.stack([outputs[o.name] for o in kin.bias.outputs], axis=1) / units
+    sizes = np.maximum(1.0, np.max(np.abs(expected), axis=1, keepdims=True))
+    errors = np.max(np.abs(derived - expected) / sizes, axis=1)
+    return worst(kin, "acceleration at constant speeds", errors, samples, JACOBIAN_TOLERANCE, samples.pose_ease)
 
 
 def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:

@@ -27,6 +27,7 @@ from derive.witness.frames import (
     Rows,
     Symbols,
     Term,
+    drift_of,
     followed_axes,
     followed_pose,
     frame_at,
@@ -61,6 +62,8 @@ class Closure:
     """joints, pose, parameters → A = ∂Φ/∂pose along twists, one column for each of `moved`"""
     by_joints: Rows
     """joints, pose, parameters → B = ∂Φ/∂q"""
+    drift: Rows
+    """axes, pose, parameters, speeds of the axes, rates of `moved` → -A times the acceleration at constant speeds"""
     frame: Rows
     """joints, parameters → the pose of a chain; with stated equations the rotation that they tell, at position zero"""
     positive: Rows
@@ -145,6 +148,11 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     residual, equations = _residual(described, known, moved)
     units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in described.joints))
     at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(rows))])
+    frame, speeds, rates = _frame_of(described, known), ca.SX.sym("speeds", count), ca.SX.sym("rates", len(rows))
+    by_joints, moving = ca.jacobian(at_rest[0], q), ca.SX.sym("moving", count)
+    posed = ca.jtimes(moved, twist, rates) if described.chain is None else ca.jtimes(frame, q, moving)
+    velocity, moved_axes = at_rest[1] @ rates + by_joints @ moving, (axes, joints, speeds / units)
+    drift = drift_of(velocity, (q, moving), (pose, posed), moved_axes)
     possible = [least for j, (_, least) in zip(described.joints, drives, strict=True) if j.loops]
     named = known | _position_symbols(pose)
     labels = _machine_symbols(described, machine, q, p) | _position_symbols(pose)
@@ -158,8 +166,9 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
         gearing=Rows("gearing", (axes, p), ca.jacobian(joints, axes) @ ca.diag(1 / units)),
         residual=Rows("residual", state, at_rest[0]),
         by_pose=Rows("by_pose", state, at_rest[1]),
-        by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
-        frame=Rows("frame", (q, p), _frame_of(described, known)),
+        by_joints=Rows("by_joints", state, by_joints),
+        drift=Rows("drift", (axes, pose, p, speeds, rates), drift),
+        frame=Rows("frame", (q, p), frame),
         positive=Rows("positive", state, _column([*_positive(described, named, machine, labels), *possible])),
         indicators=Rows("indicators", state, _column(_indicators(described, named, machine, labels))),
         equations=equations,

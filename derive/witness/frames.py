@@ -122,6 +122,18 @@ def moved_by(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term
     return ca.vertcat(pose[:3] + ca.vertcat(*shift), ca.reshape(turned.T, 9, 1))
 
 
+def drift_of(velocity: Term, joints: tuple[Term, Term], pose: tuple[Term, Term], axes: tuple[Term, Term, Term]) -> Term:
+    """The rate of the velocity of Φ at constant rates of the pose, and constant speeds of the axes.
+
+    joints, pose: their values and rates; axes: their values, the joints at these, and their speeds.
+    """
+    (q, moving), (values, at_axes, speeds) = joints, axes
+    at_speeds = ca.jtimes(at_axes, values, speeds)
+    changed = ca.jtimes(velocity, q, moving) + ca.jtimes(velocity, *pose)
+    changed += ca.jacobian(velocity, moving) @ ca.jtimes(at_speeds, values, speeds)
+    return ca.substitute([changed], [q, moving], [at_axes, at_speeds])[0]
+
+
 def followed_axes(mechanism: Mechanism, known: Symbols) -> list[Term]:
     """The axes of the turns that follow the commanded rotation, in the frame of the base."""
     if mechanism.chain is None or not mechanism.followed_turns:

@@ -27,9 +27,9 @@ AXES_TOLERANCE = 1e-9
 _NEAR = 15.0
 """The largest distance of references from the axes, in degrees: with gear couplings, too, the turn stays the same."""
 _EVERY, _MOST_MISSED = 6, 0.01
-"""With a root scan all solutions are sought at every n-th pose, and at most this share of them may be missed."""
+"""With a root search all solutions are sought at every n-th pose, and at most this share of them may be missed."""
 _AROUND = 8
-"""References from which a root scan is started to find all solutions."""
+"""References from which a root search is started to find all solutions."""
 _TOOL = 0.03
 """The size of the point off the flange, in reaches: less than REGULAR, so that it does not reach a mirror solution."""
 
@@ -144,7 +144,7 @@ def _in_reach(kin: Kinematics, rotation: Array, offset: Array) -> Array:
 
 
 def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dict[str, Array]) -> Slots:
-    """Run an inverse program for all slots at once: a root scan takes as many passes for one row as for all."""
+    """Run an inverse program for all slots at once: a root search takes as many passes for one row as for all."""
     slots, count = np.array(_signs(kin)), len(samples)
     sigmas = {branch_sign(b.name).name: np.repeat(slots[:, i], count) for i, b in enumerate(kin.branches)}
     repeated = {name: np.tile(column, len(slots)) for name, column in (samples.values | commands).items()}
@@ -164,9 +164,9 @@ def _searched(kin: Kinematics, samples: Samples, search: Search) -> Slots:
 
 
 def _around(kin: Kinematics, samples: Samples, searched: Joint) -> Slots:
-    """The solutions of every slot with a root scan, from references around the circle: a branch may have several."""
+    """The solutions of every slot with a root search, from references around the circle: a branch may have several."""
     commands = _commands(kin, samples)
-    # The poses once for every reference, in one run: a root scan takes as many passes for one row as for all.
+    # The poses once for every reference, in one run: a root search takes as many passes for one row as for all.
     around, count = np.linspace(0.0, 360.0, _AROUND, endpoint=False), len(samples)
     many = samples.take(np.tile(np.arange(count), _AROUND))
     commands = {name: np.tile(column, _AROUND) for name, column in commands.items()}
@@ -237,7 +237,7 @@ def _round_trip(
 
 
 def _compare(kin: Kinematics, problem: Problem, row: int, solutions: tuple[Array, Array], place: str) -> int:
-    """The number of solutions that a root scan misses. Raises `Disagreement` for any other difference."""
+    """The number of solutions that a root search misses. Raises `Disagreement` for any other difference."""
     found, offered = solutions
     places = problem.places_at(row, offered)
     missing = [f for f in problem.places_at(row, found) if not same(f, places).any()]

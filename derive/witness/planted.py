@@ -1,4 +1,4 @@
-"""Poses close to where branches of a root scan meet: a joint is moved until the indicator of a branch nearly vanishes.
+"""Poses close to where branches of a root search meet: a joint is moved until the indicator of a branch is nearly 0.
 
 Of every machine and every branch, on all decades of distance, with references far away: how many have no answer on
 their own branch. Random poses never come there, but robots stand there.
@@ -54,7 +54,7 @@ def _refused(kin: Kinematics, values: dict[str, Array], margins: Array) -> tuple
     """The number of rows that no side answers, and of all. margins: of every branch by rows. Where one branch meets
     the next one, either side may answer; where several do, no row is asked.
 
-    Both sides stand in one run: a root scan takes as many passes for one row as for all.
+    Both sides stand in one run: a root search takes as many passes for one row as for all.
     """
     meets = np.abs(margins) < _FREE
     asked = np.flatnonzero(meets.sum(axis=0) < 2)

@@ -156,23 +156,34 @@ def _tried(mechanism: Mechanism) -> int:
     """How many axis values of a machine are tried."""
     if mechanism.is_platform:
         return _NEAR_CANDIDATES if mechanism.branches else _CANDIDATES
-    return _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
+    return _LOOP_CANDIDATES if mechanism.rods or mechanism.drives else _CANDIDATES
 
 
 def jacobian_of(closure: Closure, samples: Samples) -> Array:
-    """J = -A⁻¹ B, by least squares where Φ has more rows than the task.
+    """J = -A⁻¹ B: the rows of the task."""
+    return moved_by_axes(closure, samples)[:, : len(closure.task)]
 
-    Rows of Φ are squares of lengths, lengths and numbers: each over its size, or a number has the rounding of a square.
-    Lengths of the pose are measured in reaches, so that the unit of length changes no digit.
+
+def moved_by_axes(closure: Closure, samples: Samples) -> Array:
+    """J = -A⁻¹ B: the rows of the task, then those of what the loop moves besides."""
+    by_joints = closure.by_joints(samples.joints, samples.pose, samples.parameters)
+    return solved_for_pose(closure, samples, by_joints) @ closure.gearing(samples.axes, samples.parameters)
+
+
+def solved_for_pose(closure: Closure, samples: Samples, right: Array) -> Array:
+    """-A⁻¹ right, by least squares where Φ has more rows than the task.
+
+    Rows of Φ are squares of lengths, lengths and numbers: each over its size, or a number has the rounding of a square;
+    entries of a rotation have the size 1, however little they change. Lengths of the pose are measured in reaches, so
+    that the unit of length changes no digit.
     """
     state, units = (samples.joints, samples.pose, samples.parameters), closure.row_scale(samples.reach)
     a, b = closure.by_pose(*state) * units[:, None, :], closure.by_joints(*state)
     scaled = b * closure.joint_scale(samples.reach, samples.joints, samples.parameters)[:, None, :]
     sizes = np.linalg.norm(np.concatenate([a, scaled], axis=2), axis=2, keepdims=True)
     sizes[sizes == 0.0] = 1.0
-    moved = -np.linalg.pinv(a / sizes) @ (b / sizes) @ closure.gearing(samples.axes, samples.parameters)
-    by_joints = moved * units[:, :, None]
-    return np.asarray(by_joints[:, : len(closure.task)])
+    sizes[:, closure.equations :] = 1.0
+    return np.asarray(-np.linalg.pinv(a / sizes) @ (right / sizes) * units[:, :, None])
 
 
 def describe(kin: Kinematics, samples: Samples, row: int) -> str:

@@ -27,7 +27,7 @@ typedef struct {
   PyObject *array;                        /* the class of arrays, once NumPy is there */
 } machine_object;
 
-enum { SLOTS_ON_STACK = 16, SOFTKIN_MOST_ROWS = 24, SOFTKIN_MOST_MARGINS = 64 };
+enum { SLOTS_ON_STACK = 16 };
 
 /* ---- from Python ---- */
 
@@ -399,11 +399,12 @@ static PyObject *others_of(const softkin_others *others, int slot, int width) {
 
 /* Why a slot has no axes: status, reason with the unit of the missing amount, amount, turn. */
 static PyObject *diagnosis_of(const machine_object *self, const softkin_refusal *why) {
-  PyObject *found = named_tuple(self->diagnosis, 4);
+  PyObject *found = named_tuple(self->diagnosis, 5);
   PyObject *known = PyTuple_GetItem(self->statuses, why->status);
   if (found == NULL || known == NULL || !put(found, 0, Py_NewRef(known))
       || !put(found, 1, PyUnicode_FromFormat(why->unit[0] == '\0' ? "%s" : "%s [%s]", why->reason, why->unit))
-      || !put(found, 2, PyFloat_FromDouble(why->missing)) || !put(found, 3, PyLong_FromLong(why->turn))) {
+      || !put(found, 2, PyFloat_FromDouble(why->missing)) || !put(found, 3, PyLong_FromLong(why->turn))
+      || !put(found, 4, PyFloat_FromDouble(0.0))) {
     return drop(found);
   }
   return found;

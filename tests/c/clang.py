@@ -1,7 +1,5 @@
 """Compile every C source of a folder with clang, each warning an error: `make clang`. The tests do so with gcc."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -9,18 +7,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 COMPILE = (
-    sys.executable,
-    "-m",
-    "ziglang",
-    "cc",
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-Wconversion",
-    "-O0",
-    "-c",
-)
+    sys.executable, "-m", "ziglang", "cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-O0", "-c",
+)  # fmt: skip
 """The clang that the package ziglang brings, for machines without one."""
 
 

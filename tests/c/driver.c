@@ -202,6 +202,38 @@ static void jacobian(const void *machine) {
   free(rows);
 }
 
+/* Velocities, or accelerations at velocities, of the axes. */
+static void motion(const void *machine, bool has_velocities) {
+  double *axes = numbers(tested->axis_count);
+  double *velocities = has_velocities ? numbers(tested->axis_count) : NULL;
+  double *given = numbers(tested->row_count), *found = empty(tested->axis_count);
+  softkin_refusal why;
+  softkin_status status;
+  void *moved = started(machine, &status, &why);
+  if (status == SOFTKIN_OK) {
+    status = has_velocities ? softkin_axis_accelerations(tested, moved, axes, velocities, given, found, &why)
+        : softkin_axis_velocities(tested, moved, axes, given, found, &why);
+  }
+  free(moved);
+  if (succeeds(status, &why)) {
+    tell_all(found, tested->axis_count);
+  } else {
+    untouched(found, tested->axis_count);
+  }
+  free(axes);
+  free(velocities);
+  free(given);
+  free(found);
+}
+
+static void axis_velocities(const void *machine) {
+  motion(machine, false);
+}
+
+static void axis_accelerations(const void *machine) {
+  motion(machine, true);
+}
+
 static void limits(const void *machine) {
   double *axes = numbers(tested->axis_count), *values = empty(tested->quantity_count);
   softkin_refusal why;
@@ -311,7 +343,7 @@ static void describe(const void *machine) {
 
 int main(void) {
   static void (*const calls[])(const void *) = {NULL, forward, singularity, jacobian, inverse, inverse_all, limits,
-                                                 describe};
+                                                 axis_velocities, axis_accelerations, describe};
   void *machine = calloc(1, tested->machine_size);
   double call;
   while (read_number(&call)) {

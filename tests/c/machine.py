@@ -1,7 +1,5 @@
 """Questions to the driver and its answers, in the form that the comparison of languages has: see `driver.c`."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +10,11 @@ from typing import Any
 
 Answer = dict[str, Any]
 Call = list[Any]
-_CALLS = ("forward", "singularity", "jacobian", "inverse", "inverseAll", "limits")
+_CALLS = (
+    "forward", "singularity", "jacobian", "inverse", "inverseAll", "limits", "axisVelocities", "axisAccelerations",
+)  # fmt: skip
+_MOTIONS = {"axisVelocities": "velocities", "axisAccelerations": "accelerations"}
+"""The calls whose answer has a value for each axis besides the inverse, with the word for it."""
 
 
 @dataclass(frozen=True)
@@ -152,6 +154,10 @@ def _call(known: Description, call: Call) -> bytes:
     if name in ("forward", "singularity", "jacobian", "limits"):
         numbers += given[0]
         numbers += [] if name == "limits" else _optional(_frame(given[1]) if len(given) > 1 else None)
+    elif name in _MOTIONS:
+        arrays = [one for one in given if not isinstance(one, dict)]
+        numbers += [part for one in arrays for part in one]
+        numbers += _optional(_frame(given[-1]) if len(given) > len(arrays) else None)
     else:
         numbers += _frame(given[0])
         for one in given[1:]:
@@ -193,7 +199,7 @@ def _results(stream: _Stream, known: Description, name: str) -> Answer:
     if name == "jacobian":
         entries = stream.numbers(len(known.rows) * len(known.axes))
         return {"rows": [entries[len(known.axes) * i : len(known.axes) * (i + 1)] for i in range(len(known.rows))]}
-    return {"axes": stream.numbers(len(known.axes))}
+    return {_MOTIONS.get(name, "axes"): stream.numbers(len(known.axes))}
 
 
 def _slots(stream: _Stream, known: Description) -> Answer:

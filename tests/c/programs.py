@@ -1,7 +1,6 @@
 """The sources of a mechanism, compiled with a program that answers questions about it."""
 
-from __future__ import annotations
-
+import atexit
 import os
 import re
 import shutil
@@ -87,9 +86,9 @@ def refused_in(folder: Path, *options: str) -> str:
 
 
 def written(texts: Mapping[str, str]) -> Path:
-    """A folder of files."""
+    """A folder of files, which goes when the tests are over."""
     folder = Path(mkdtemp(prefix="c-"))
-    _FOLDERS.append(folder)
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     for path, text in texts.items():
         (folder / path).write_text(text, encoding="utf-8")
     return folder
@@ -98,12 +97,3 @@ def written(texts: Mapping[str, str]) -> Path:
 def files_of(part: Part) -> Mapping[str, str]:
     """All files of one machine."""
     return package.files([part])
-
-
-_FOLDERS: list[Path] = []
-
-
-def remove() -> None:
-    """Remove all folders."""
-    while _FOLDERS:
-        shutil.rmtree(_FOLDERS.pop(), ignore_errors=True)

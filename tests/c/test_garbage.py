@@ -1,7 +1,5 @@
 """Whatever a call is given, it ends in a status, and writes results only where that is 0; the sanitizers are silent."""
 
-from __future__ import annotations
-
 import random
 from typing import Any
 

@@ -1,6 +1,4 @@
-"""What is written: its width, what it includes, what it says of a machine, and its use."""
-
-from __future__ import annotations
+"""What is written: its width, what it includes, what it says of a machine, its use, and the runtime file by file."""
 
 import re
 import subprocess
@@ -11,11 +9,13 @@ import softkin
 
 from derive.emit.c import package, printer
 from derive.emit.c.printer import is_reserved, member, spelled
+from derive.emit.language import RUNTIME
 from derive.ir.constants import LEAST
 from tests.c.machine import described
 from tests.c.programs import COMPILER, STRICT, compile_in, files_of, part_of, program_of, written
 from tests.corpus.dimensions import DIMENSIONS
 from tests.mechanisms import kinematics_of, named
+from tests.native.build import SOURCES, headers
 
 ROOT = Path(__file__).parents[2]
 SHARED = {"softkin.c", "softkin.h", "softkin_constants.h", "softkin_rotation.h"}
@@ -119,3 +119,19 @@ def test_optimised_and_for_cpp() -> None:
     (folder / "all.cpp").write_text("".join(f'#include "{part["index"]["module"]}.h"\n' for part in parts))
     options = [option for option in STRICT if not option.startswith("-std")]
     subprocess.run([COMPILER, *options, "-std=c++11", "-fsyntax-only", "all.cpp"], cwd=folder, check=True)
+
+
+FOLDERS = (RUNTIME / "c", RUNTIME / "native")
+
+
+FILES = [path for folder in FOLDERS for path in sorted(folder.glob("*.[ch]"))]
+EXTENSIONS = [path for path in FILES if "Python.h" in path.read_text(encoding="utf-8")]
+"""They need the headers of Python, as the core itself does: `python -m tests.native` says where there are none."""
+ASKED = FILES if Path(headers(), "Python.h").is_file() else [path for path in FILES if path not in EXTENSIONS]
+
+
+@pytest.mark.parametrize("path", ASKED, ids=str)
+def test_it_compiles_alone(path: Path) -> None:
+    """No warning, and no name that another file would have to bring."""
+    folders = [f"-I{folder}" for folder in (*FOLDERS, SOURCES, headers())]
+    subprocess.run([COMPILER, *STRICT, *folders, "-fsyntax-only", "-x", "c", path], check=True)

@@ -1,7 +1,5 @@
 """The calls with the types of a machine are those with any machine, and what is missing is refused."""
 
-from __future__ import annotations
-
 import subprocess
 from contextlib import suppress
 from pathlib import Path

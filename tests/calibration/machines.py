@@ -1,7 +1,5 @@
 """Machines of the catalogue with dimensions, and random deviations of them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Planted deviations are found again from noisy samples; what samples do not determine is named, and stays."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A serial machine with deviations: every call of a machine, against its chain multiplied out."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from collections.abc import Sequence

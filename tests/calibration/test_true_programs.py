@@ -2,8 +2,6 @@
 multiplied out, and against `robot.calibrated`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module

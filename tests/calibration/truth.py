@@ -3,8 +3,6 @@
 It knows the description and what docs/CALIBRATION.md says a deviation is, and nothing of the package.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

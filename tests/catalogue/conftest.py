@@ -1,7 +1,7 @@
 """Every test that asks for a mechanism or its machines runs for the whole catalogue.
 
 Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in the middle): closed loops go through
-tests of the same thing in `loops`. The hexapod, which has no branches, has `hexapod`.
+tests of the same thing in `loops`. What the hexapod alone can be asked is in `hexapod`.
 """
 
 from pathlib import Path
@@ -19,7 +19,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Give `mechanism` its values."""
     if "mechanism" in metafunc.fixturenames and metafunc.definition.path.parent == Path(__file__).parent:
         is_serial = metafunc.definition.get_closest_marker("serial") is not None
-        every = (*MECHANISMS, *DRIVEN, *LOOPS, *(m for m in TURNING if m.name != "Kin_Hexapod"))
+        every = (*MECHANISMS, *DRIVEN, *LOOPS, *TURNING)
         metafunc.parametrize("mechanism", MECHANISMS if is_serial else every, ids=lambda m: m.name)
 
 

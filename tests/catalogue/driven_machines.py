@@ -20,7 +20,7 @@ from tests.mechanisms import catalogue
 DRIVEN = tuple(m for _, m in catalogue() if m.drives)
 STEADY = 0.15
 """The derivatives of loops at a regular pose are at least this part of their largest values."""
-GRID = 721
+GRID = 181
 """Values at which a root of a loop is looked for."""
 
 
@@ -99,6 +99,15 @@ class DrivenClosure(Closure):
                 motors[:, k] = np.where(beyond, np.nan, by)
         return motors / self.units + self.offsets
 
+    def closed(self, axes: Array, rng: Generator) -> Array:
+        """Axis values with others where loops move joints: those of random joint values, at which the loops close."""
+        found, sizes = np.array(axes), np.where(self.turning, np.pi, self.reach)
+        missing = np.tile([k in self.loops for k in range(axes.shape[1])], (len(axes), 1))
+        while missing.any():
+            found = np.where(missing, self.axes(rng.uniform(-1.0, 1.0, axes.shape) * sizes), found)
+            missing &= ~np.isfinite(self.joints(found))
+        return found
+
     def slopes(self, axes: Array) -> Array:
         """The derivatives of all loops by both values, a column each."""
         columns = []
@@ -151,19 +160,7 @@ class DrivenMachine(Machine):
         return np.nanmax(self.closure.slopes(self.sample(500)), axis=0)
 
     def _any(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        chosen: list[Array] = []
-        while sum(map(len, chosen)) < count:
-            joints = super()._any(2 * count, rng, farthest)
-            driven = [*self.closure.loops]
-            values = np.array(joints)
-            for k in driven:
-                is_angle = self.mechanism.joints[k].is_angle
-                values[:, k] = rng.uniform(-1.0, 1.0, len(joints)) * (np.pi if is_angle else self.reach)
-            axes = self.closure.axes(values)
-            joints[:, driven] = axes[:, driven]
-            joints = joints[np.isfinite(joints).all(axis=1)]
-            chosen.append(joints[np.isfinite(self.closure.joints(joints)).all(axis=1)])
-        return np.concatenate(chosen)[:count]
+        return self.closure.closed(super()._any(count, rng, farthest), rng)
 
 
 @cache
@@ -185,6 +182,10 @@ def driven_machines_of(mechanism: Mechanism) -> tuple[DrivenMachine, ...]:
 def driven_machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> DrivenMachine:
     """One machine; what is not given has its default."""
     robot = softkin.catalogue()[mechanism.name](**given)
-    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
-    closure = DrivenClosure(mechanism, robot.parameters, sum(lengths))
-    return DrivenMachine(label, mechanism, given, robot, closure, sum(lengths))
+    reach = reach_of(mechanism, robot)
+    return DrivenMachine(label, mechanism, given, robot, DrivenClosure(mechanism, robot.parameters, reach), reach)
+
+
+def reach_of(mechanism: Mechanism, robot: softkin.Mechanism) -> float:
+    """The sum of the lengths of a machine."""
+    return sum(abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE))

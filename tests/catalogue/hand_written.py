@@ -264,6 +264,11 @@ def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
 
 
+def _skew(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angle = np.radians(p["skew"])
+    return q[0] + q[1] * np.cos(angle), q[1] * np.sin(angle), q[2], 0 * q[0]
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
@@ -278,6 +283,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_NutatingTable_BC": _nutating_table,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
+    "Softkin_SkewGantry3": _skew,
     "Softkin_TableTable_AC": _table_table,
     "Softkin_TableTable_BC": _table_table_b,
     "Softkin_Transmit": _face,

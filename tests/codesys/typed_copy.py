@@ -1,7 +1,5 @@
 """The variables of an object, from the typed elements of PLCopenXML and from the parsed text, in one form."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 

@@ -50,20 +50,11 @@ def test_one_command_gives_everything_that_a_user_of_the_machine_needs(scara: Fo
     """Package, block, XML, picture, self-test; headers say what was measured; and the package works alone."""
     names = scara.names("build")
     assert {
-        "python/LICENSE",
-        "python/pyproject.toml",
-        "python/README.md",
-        "python/my_scara/__init__.py",
-        "python/my_scara/myscara.py",
-        "python/my_scara/py.typed",
-        "st/own/MyScara.st",
-        "st/own/MyScara.xml",
-        "st/softkin.xml",
-        "st/pictures/MyScara.png",
-        "st/pictures/MyScara.svg",
-        "st/selftest/MyScara_SelfTest.st",
+        "python/LICENSE", "python/pyproject.toml", "python/README.md", "python/my_scara/__init__.py",
+        "python/my_scara/myscara.py", "python/my_scara/py.typed", "st/own/MyScara.st", "st/own/MyScara.xml",
+        "st/softkin.xml", "st/pictures/MyScara.png", "st/pictures/MyScara.svg", "st/selftest/MyScara_SelfTest.st",
         "st/import_softkin.py",
-    } <= names
+    } <= names  # fmt: skip
     assert not [n for n in names if "softkin/" in n and n.startswith("python")]
     class_text = (scara.path / "build/python/my_scara/myscara.py").read_text()
     assert "Verified at 144 poses" in class_text and "softkin" not in class_text

@@ -76,7 +76,7 @@ def test_branches_that_nobody_named_stand_there_to_be_named(folder: Folder) -> N
             ],
         ),
         ("softkin_planar_3rrr.py", [r"A3 <- trigonometric <- rod 3", r"Newton's method from the home pose"]),
-        ("kin_ac6_rzryryrxryrz_j6offset.py", [r"^Where \w+ is not 0, A6 is scanned for roots"]),
+        ("kin_ac6_rzryryrxryrz_j6offset.py", [r"^Where \w+ is not 0, A6 is searched for roots"]),
         ("kin_gantry2.py", [r"A1 <- affine <- x|X <- affine <- x", r"Branches: none, every pose has one solution"]),
     ],
 )

@@ -15,8 +15,8 @@ from derive.pipeline import derive_one
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN_ELSEWHERE = ("CALIBRATION.md", "COMPILER.md", "GALLERY.md", "PYTHON.md")
-"""tests/calibration, test_compiler_guide, test_gallery and test_python_guide run these; test_guide runs what begins
-with the name of a file."""
+"""test_compiler_guide, test_gallery and test_python_guide run these; test_guide runs what begins with the name of a
+file."""
 LISTINGS = [
     (path.name, text)
     for path in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))

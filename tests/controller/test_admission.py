@@ -35,21 +35,13 @@ def test_its_own_addresses(host: str, local: str) -> None:
 @pytest.mark.parametrize(
     ("host", "local"),
     [
-        (None, "127.0.0.1"),
-        ("", "127.0.0.1"),
-        ("evil.example:8000", "127.0.0.1"),
-        ("127.0.0.1.evil.example", "127.0.0.1"),
-        ("localhost.evil.example", "127.0.0.1"),
-        ("evil.example@127.0.0.1.x", "127.0.0.1"),
-        ("127.0.0.2:8000", "127.0.0.1"),
-        ("192.168.1.8:8000", "192.168.1.7"),
-        ("0.0.0.0:8000", "127.0.0.1"),
-        ("[::1", "::1"),
-        ("2130706433:8000", "127.0.0.1"),
-        ("evil.example", ""),
-        ("", ""),
+        (None, "127.0.0.1"), ("", "127.0.0.1"), ("evil.example:8000", "127.0.0.1"),
+        ("127.0.0.1.evil.example", "127.0.0.1"), ("localhost.evil.example", "127.0.0.1"),
+        ("evil.example@127.0.0.1.x", "127.0.0.1"), ("127.0.0.2:8000", "127.0.0.1"),
+        ("192.168.1.8:8000", "192.168.1.7"), ("0.0.0.0:8000", "127.0.0.1"), ("[::1", "::1"),
+        ("2130706433:8000", "127.0.0.1"), ("evil.example", ""), ("", ""),
     ],
-)
+)  # fmt: skip
 def test_other_hosts(host: str | None, local: str) -> None:
     """Even where the origin is the same: a name may have been bent to this address."""
     assert refusal_of_host(host, local)

@@ -22,15 +22,9 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         if given.other:
             command = [
-                sys.executable,
-                "-m",
-                "tests.corpus.record",
-                "--package",
-                given.other,
-                "--output",
-                scratch,
+                sys.executable, "-m", "tests.corpus.record", "--package", given.other, "--output", scratch,
                 *given.names,
-            ]
+            ]  # fmt: skip
             subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL)
         use(given.package)
         from tests.corpus.recording import NAMES, RECORDED, compared, read

@@ -3,13 +3,8 @@
 from collections.abc import Mapping
 
 _TRIANGLE = {
-    "rail_x_1": 0.0,
-    "rail_y_1": 150.0,
-    "rail_x_2": -130.0,
-    "rail_y_2": -75.0,
-    "rail_x_3": 130.0,
-    "rail_y_3": -75.0,
-}
+    "rail_x_1": 0.0, "rail_y_1": 150.0, "rail_x_2": -130.0, "rail_y_2": -75.0, "rail_x_3": 130.0, "rail_y_3": -75.0,
+}  # fmt: skip
 _DELTA = {
     f"{name}_{i}": value
     for name, value in {"base_radius": 140.0, "inner_arm": 200.0, "outer_arm": 450.0, "tcp_radius": 45.0}.items()
@@ -59,7 +54,25 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
     },
+    "Softkin_Excavator": {
+        "boom_foot_x": 300.0, "boom_foot_z": 800.0, "boom_length": 1800.0, "stick_length": 1100.0,
+        "bucket_length": 600.0, "boom_cylinder_base_x": 250.0, "boom_cylinder_base_z": -350.0,
+        "boom_cylinder_eye_x": 900.0, "boom_cylinder_eye_z": -150.0, "stick_cylinder_base_x": -1000.0,
+        "stick_cylinder_base_z": 350.0, "stick_cylinder_eye_x": -250.0, "stick_cylinder_eye_z": 100.0,
+        "bucket_cylinder_base_x": -900.0, "bucket_cylinder_base_z": 200.0, "rocker_pivot_x": -220.0,
+        "rocker_length": 200.0, "rod_length": 276.0, "bucket_ear_x": -60.0, "bucket_ear_z": 140.0,
+    },
+    "Softkin_RodPalletizer": {
+        "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
+        "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_base_x": -420.0, "cylinder_base_z": 60.0,
+        "cylinder_eye": 380.0, "crank_base_x": 350.0, "crank_base_z": -300.0, "crank_length": 180.0,
+        "rod_length": 308.0, "lever_length": 220.0,
+    },
+    "Softkin_ScissorLift": {
+        "beam_length": 1600.0, "table_height": 120.0,
+    },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
+    "Softkin_SkewGantry3": {"skew": 78.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
     "Softkin_Transmit": {},

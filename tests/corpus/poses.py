@@ -8,6 +8,7 @@ import numpy as np
 import softkin
 
 from tests.corpus.robots import Robot
+from tests.random_axes import random_axes
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Axes = tuple[float, ...]
@@ -59,7 +60,7 @@ def ends(one: Robot, count: int, rng: np.random.Generator) -> list[Axes]:
     """Axis values just before and behind the end of what can be assembled."""
     inside = [axes for axes, _ in zip(_possible(one, rng), range(count), strict=False)]
     found: list[Axes] = []
-    for start, end in zip(inside, _any(one, 400, rng).tolist(), strict=False):
+    for start, end in zip(inside, random_axes(one.made, 400, rng, 178.0, one.reach).tolist(), strict=False):
         good, bad = np.array(start), np.array(end)
         if _frame(one, tuple(bad.tolist())):
             bad = bad + 3.0 * one.reach
@@ -82,15 +83,10 @@ def _possible(one: Robot, rng: np.random.Generator) -> Iterator[Axes]:
     if "home_z" in one.made.parameters:
         yield from _about_home(one, rng)
         return
-    rows = _any(one, DRAWN, rng)
+    rows = random_axes(one.made, DRAWN, rng, 178.0, one.reach)
     with np.errstate(all="ignore"):
         status = one.made.forward_batch(rows)[3]
     yield from map(tuple, rows[status == 0].tolist())
-
-
-def _any(one: Robot, count: int, rng: np.random.Generator) -> Array:
-    size = np.where(one.is_angle, 178.0, one.reach)
-    return rng.uniform(-1.0, 1.0, (count, len(size))) * size
 
 
 def _about_home(one: Robot, rng: np.random.Generator) -> Iterator[Axes]:

@@ -142,7 +142,7 @@ def asked(fmu: Fmu) -> Callable[[Answer], Answer | None]:
             return None
         found = as_arrays(question, axes, size)
         if found is None or "configurations" not in found:
-            return found
+            return found and found | {"all": False}
         given = [starts if one is None else one for one in found["configurations"]]
         return found | {"all": False, "configurations": [one for one in given if all(-128 <= b < 128 for b in one)]}
 

@@ -9,7 +9,7 @@ from .faults import StError
 from .lexical import QUERY
 
 REAL_FUNCTIONS = {"SQRT", "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "EXP", "LN"}
-_COUNTS = {"ABS": (1, 1), "TRUNC": (1, 1), "MIN": (2, 9), "MAX": (2, 9), "SEL": (3, 3), "LIMIT": (3, 3)}
+_COUNTS = {"ABS": (1, 1), "TRUNC": (1, 1), "MIN": (2, 9), "MAX": (2, 9), "SEL": (3, 3), "LIMIT": (3, 3), "LEFT": (2, 2)}
 
 
 def is_builtin(name: str) -> bool:
@@ -42,6 +42,9 @@ def _result(name: str, given: list[types.Type]) -> types.Type | None:
     if name in ("MIN", "MAX", "LIMIT"):
         met = _meet(given)
         return met if met is not None and _is_number(met) else None
+    if name == "LEFT":
+        length = given[1].value if isinstance(given[1], types.IntegerLiteral) else -1
+        return types.String(length) if isinstance(given[0], types.String) and length >= 0 else None
     if name == "SEL":
         met = _meet(given[1:])
         return met if given[0] == types.BOOL and met is not None and types.is_scalar(met) else None

@@ -38,10 +38,10 @@ def plain(type_text: str | None) -> str | None:
 def check_contract(block: types.Block) -> None:
     own = {interface.name: interface for interface in block.interfaces if interface.name.lower() not in _BY_KEY}
     for written in block.declaration.implements:
-        if written in own:
-            _check_own(block, own[written])
-            continue
         *space, name = written.split(".")
+        if name in own and space in ([], ["ROB"]):
+            _check_own(block, own[name])
+            continue
         if name.lower() not in _BY_KEY or [part.upper() for part in space] not in ([], ["TRAFO"]):
             raise StError(block.declaration.at, f"unknown interface {written}")
         _check_interface(block, _BY_KEY[name.lower()])

@@ -1,7 +1,5 @@
 """Python source for the initial value of a variable."""
 
-from __future__ import annotations
-
 from . import ast, constants, python_names
 from . import st_types as types
 

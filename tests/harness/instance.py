@@ -1,7 +1,5 @@
 """Instances of blocks and functions as Python sees them, and where their faults come from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import TracebackType

@@ -4,8 +4,6 @@ A test that cannot fail is left out of the translation: most indices of loops ar
 the loop.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 from . import ast, constants

@@ -19,22 +19,9 @@ _TOKEN = re.compile(
 
 # These exist in some dialects only, or mean different things in them.
 REFUSED_WORDS = {
-    "AND_THEN",
-    "OR_ELSE",
-    "CONTINUE",
-    "REFERENCE",
-    "ATAN2",
-    "FLOOR",
-    "CEIL",
-    "EXPT",
-    "JMP",
-    "REPEAT",
-    "GOTO",
-    "UNION",
-    "VAR_STAT",
-    "VAR_INST",
-    "VAR_TEMP",
-}
+    "AND_THEN", "OR_ELSE", "CONTINUE", "REFERENCE", "ATAN2", "FLOOR", "CEIL", "EXPT", "JMP", "REPEAT", "GOTO",
+    "UNION", "VAR_STAT", "VAR_INST", "VAR_TEMP",
+}  # fmt: skip
 QUERY = "__QUERYINTERFACE"
 """The operator that finds an interface of an object: for programs of a user, beyond the portable subset."""
 SYSTEM = "__SYSTEM"

@@ -107,11 +107,7 @@ class Library:
     """Compiled texts. `objects` holds their declarations by name, in the order of the texts."""
 
     def __init__(
-        self,
-        translated: Translated,
-        access: stubs.MatrixAccess,
-        matrix_size: int,
-        instrument: Instrument | None = None,
+        self, translated: Translated, access: stubs.MatrixAccess, matrix_size: int, instrument: Instrument | None = None
     ) -> None:
         # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
         self.objects: dict[str, Any] = {declaration.name: declaration for declaration in translated.own}

@@ -1,7 +1,5 @@
 """The interfaces of SoftMotion as types: a program can hold a reference to one, and call its documented methods."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby

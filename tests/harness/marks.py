@@ -2,8 +2,6 @@
 assignment each.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager

@@ -1,13 +1,103 @@
 """Objects of a text: from the grammar's nodes to declarations."""
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 from tree_sitter import Node
 
 from . import ast
 from .lexical import refuse_words
-from .parse_statements import body
+from .parse_expressions import call, expression
 from .parse_variables import sections, type_text, variables
 from .pieces import Piece, split
 from .syntax import NO_RESULT, Tree, field, fields, grow, named
+
+
+def statements(tree: Tree, nodes: Iterable[Node]) -> tuple[ast.Statement, ...]:
+    """Empty statements vanish: `END_IF;` and `END_IF` mean the same."""
+    return tuple(_statement(tree, node) for node in nodes if node.type != "empty_statement")
+
+
+def body(tree: Tree, node: Node, name: str = "body") -> tuple[ast.Statement, ...]:
+    return statements(tree, fields(node, name))
+
+
+def _statement(tree: Tree, node: Node) -> ast.Statement:
+    reader = _READERS.get(node.type)
+    if reader is None:
+        raise tree.refuse(node, f"{node.type} is not part of the dialect")
+    return reader(tree, node)
+
+
+def _assign(tree: Tree, node: Node) -> ast.Statement:
+    target = expression(tree, field(node, "left"))
+    return ast.Assign(target, expression(tree, field(node, "right")), tree.at(node))
+
+
+def _call(tree: Tree, node: Node) -> ast.Statement:
+    return ast.CallStatement(call(tree, named(node)[0]), tree.at(node))
+
+
+def _else_of(tree: Tree, node: Node) -> tuple[ast.Statement, ...]:
+    for clause in named(node):
+        if clause.type == "else_clause":
+            return body(tree, clause)
+    return ()
+
+
+def _if(tree: Tree, node: Node) -> ast.Statement:
+    branches = [ast.Branch(expression(tree, field(node, "condition")), body(tree, node, "consequence"))]
+    for clause in named(node):
+        if clause.type == "elsif_clause":
+            condition = expression(tree, field(clause, "condition"))
+            branches.append(ast.Branch(condition, body(tree, clause)))
+    return ast.If(tuple(branches), _else_of(tree, node), tree.at(node))
+
+
+def _label(tree: Tree, node: Node) -> ast.Label:
+    value = named(node)[0]
+    if value.type == "subrange":
+        lower, upper = expression(tree, field(value, "lower")), expression(tree, field(value, "upper"))
+        return ast.Label(lower, upper, tree.at(node))
+    return ast.Label(expression(tree, value), None, tree.at(node))
+
+
+def _case(tree: Tree, node: Node) -> ast.Statement:
+    branches = []
+    for clause in named(node):
+        if clause.type == "case_clause":
+            labels = tuple(_label(tree, c) for c in named(clause) if c.type == "case_value")
+            branches.append(ast.CaseBranch(labels, body(tree, clause)))
+    subject = expression(tree, field(node, "subject"))
+    return ast.Case(subject, tuple(branches), _else_of(tree, node), tree.at(node))
+
+
+def _for(tree: Tree, node: Node) -> ast.Statement:
+    step = node.child_by_field_name("step")
+    return ast.For(
+        expression(tree, field(node, "control")),
+        expression(tree, field(node, "start")),
+        expression(tree, field(node, "end")),
+        None if step is None else expression(tree, step),
+        body(tree, node),
+        tree.at(node),
+    )
+
+
+def _while(tree: Tree, node: Node) -> ast.Statement:
+    return ast.While(expression(tree, field(node, "condition")), body(tree, node), tree.at(node))
+
+
+_READERS: dict[str, Callable[[Tree, Node], ast.Statement]] = {
+    "assignment_statement": _assign,
+    "invocation_statement": _call,
+    "if_statement": _if,
+    "case_statement": _case,
+    "for_statement": _for,
+    "while_statement": _while,
+    "exit_statement": lambda tree, node: ast.Exit(tree.at(node)),
+    "return_statement": lambda tree, node: ast.Return(tree.at(node)),
+}
 
 
 def parse(text: str, file: str) -> list[ast.Declaration]:
@@ -24,9 +114,7 @@ def _object(piece: Piece, file: str) -> list[ast.Declaration]:
     if piece.kind == "VAR_GLOBAL":
         name = file.rsplit("/", 1)[-1].removesuffix(".st")
         return [
-            ast.Globals(
-                piece.kind, name, section.constant, section.variables, piece.pragmas, piece.comment, tree.at(node)
-            )
+            ast.Globals(*_head(tree, node, piece, piece.kind, name), section.constant, section.variables)
             for section in sections(tree, node)
         ]
     if piece.kind == "FUNCTION":
@@ -36,17 +124,22 @@ def _object(piece: Piece, file: str) -> list[ast.Declaration]:
     return [_block(tree, node, piece, file)]
 
 
+def _head(tree: Tree, node: Node, piece: Piece, kind: str, name: str = "") -> tuple[Any, ...]:
+    """What every object has: its kind, its name, its pragmas, its comment and its place."""
+    return kind, name or tree.text(field(node, "name")), piece.pragmas, piece.comment, tree.at(node)
+
+
 def _type(tree: Tree, node: Node, piece: Piece) -> ast.Declaration:
     name, definition = tree.text(field(node, "name")), field(node, "definition")
     if definition.type == "structure_type_inline":
         fields = variables(tree, definition, "structure_field", "default")
-        return ast.Structure("STRUCT", name, fields, piece.pragmas, piece.comment, tree.at(node))
+        return ast.Structure(*_head(tree, node, piece, "STRUCT", name), fields)
     if definition.type != "enumerated_type_inline":
         raise tree.refuse(node, f"{definition.type} is not part of the dialect")
     if node.child_by_field_name("default") is not None:
         raise tree.refuse(node, "a default of an enumeration is not part of the dialect")
     members = tuple(_enumerator(tree, child) for child in named(definition))
-    return ast.Enumeration("ENUM", name, members, piece.pragmas, piece.comment, tree.at(node))
+    return ast.Enumeration(*_head(tree, node, piece, "ENUM", name), members)
 
 
 def _enumerator(tree: Tree, node: Node) -> tuple[str, int | None]:
@@ -64,17 +157,8 @@ def _access(tree: Tree, node: Node) -> str:
 def _routine(tree: Tree, node: Node, piece: Piece, kind: str) -> ast.Routine:
     written = node.child_by_field_name("return_type")
     returns = None if written is None or tree.text(written) == NO_RESULT else type_text(tree, written)
-    return ast.Routine(
-        kind,
-        tree.text(field(node, "name")),
-        _access(tree, node),
-        returns,
-        sections(tree, node),
-        body(tree, node),
-        piece.pragmas,
-        piece.comment,
-        tree.at(node),
-    )
+    head = _head(tree, node, piece, kind)
+    return ast.Routine(*head, _access(tree, node), returns, sections(tree, node), body(tree, node))
 
 
 def _property(tree: Tree, node: Node, piece: Piece) -> ast.PropertyDeclaration:
@@ -84,9 +168,8 @@ def _property(tree: Tree, node: Node, piece: Piece) -> ast.PropertyDeclaration:
     if len(accessors) != 1 or not tree.text(accessors[0]).upper().startswith("GET"):
         raise tree.refuse(node, f"property {name} must have a GET part and nothing else")
     accessor = accessors[0]
-    getter = ast.Routine(
-        "GET", name, access, returns, sections(tree, accessor), body(tree, accessor), (), "", tree.at(accessor)
-    )
+    head = "GET", name, (), "", tree.at(accessor)
+    getter = ast.Routine(*head, access, returns, sections(tree, accessor), body(tree, accessor))
     return ast.PropertyDeclaration(name, access, returns, getter, piece.pragmas, piece.comment, tree.at(node))
 
 
@@ -97,15 +180,8 @@ def _interface(tree: Tree, node: Node, piece: Piece, file: str) -> ast.Interface
         if member.kind != "METHOD" or method.body or method.access:
             raise tree.refuse(node, f"{method.name} must be a method without a body and without an access")
         methods.append(method)
-    return ast.Interface(
-        piece.kind,
-        tree.text(field(node, "name")),
-        tuple(tree.text(child) for child in fields(node, "extends")),
-        tuple(methods),
-        piece.pragmas,
-        piece.comment,
-        tree.at(node),
-    )
+    extends = tuple(tree.text(child) for child in fields(node, "extends"))
+    return ast.Interface(*_head(tree, node, piece, piece.kind), extends, tuple(methods))
 
 
 def _wrapped(member: Piece, file: str) -> tuple[Tree, Node]:
@@ -125,15 +201,11 @@ def _block(tree: Tree, node: Node, piece: Piece, file: str) -> ast.Block:
             properties.append(_property(member_tree, member_node, member))
     extends = node.child_by_field_name("extends")
     return ast.Block(
-        piece.kind,
-        tree.text(field(node, "name")),
+        *_head(tree, node, piece, piece.kind),
         None if extends is None else tree.text(extends),
         tuple(tree.text(child) for child in fields(node, "implements")),
         sections(tree, node),
         tuple(methods),
         tuple(properties),
         body(tree, node),
-        piece.pragmas,
-        piece.comment,
-        tree.at(node),
     )

@@ -110,18 +110,9 @@ def _argument(tree: Tree, node: Node) -> ast.Argument:
 
 
 _READERS: dict[str, Callable[[Tree, Node], ast.Expression]] = {
-    "parenthesized_expression": _parenthesized,
-    "integer_literal": _integer,
-    "real_literal": _real,
-    "boolean_literal": _boolean,
-    "string_literal": _string,
-    "identifier": _name,
-    "qualified_identifier": _qualified,
-    "member_access_expression": _member,
-    "index_expression": _index,
-    "dereference_expression": _dereference,
-    "address_of_expression": _address,
-    "unary_expression": _unary,
-    "binary_expression": _binary,
+    "parenthesized_expression": _parenthesized, "integer_literal": _integer, "real_literal": _real,
+    "boolean_literal": _boolean, "string_literal": _string, "identifier": _name, "qualified_identifier": _qualified,
+    "member_access_expression": _member, "index_expression": _index, "dereference_expression": _dereference,
+    "address_of_expression": _address, "unary_expression": _unary, "binary_expression": _binary,
     "call_expression": call,
-}
+}  # fmt: skip

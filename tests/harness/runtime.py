@@ -186,6 +186,10 @@ def limited(low: Any, value: Any, high: Any) -> Any:
     return maximum(low, minimum(value, high))
 
 
+def left(text: str, length: int) -> str:
+    return text[:length]
+
+
 def minimum(first: Any, second: Any, *others: Any) -> Any:
     if first != first or second != second:
         _refuse_nan()
@@ -244,6 +248,7 @@ ENVIRONMENT: dict[str, Any] = {
         remainder,
         rounded,
         truncated,
+        left,
         limited,
         minimum,
         maximum,

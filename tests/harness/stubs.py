@@ -1,9 +1,7 @@
-"""Stand-ins for the SoftMotion libraries: as Structured Text where that is possible.
+"""Stand-ins for the SoftMotion libraries, and those of PacDrive: as Structured Text where that is possible.
 
 Sizes and the storage order of the matrix are not documented, so a test can choose them.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Callable
@@ -101,6 +99,48 @@ VAR_OUTPUT c_deg : LREAL; END_VAR
 END_FUNCTION
 """
 
+# The libraries of PacDrive, as far as a user transformation names them.
+GD = """
+{attribute 'qualified_only'}
+TYPE ET_Diag : (Ok, InputParameterInvalid); END_TYPE
+"""
+
+PDL = """
+TYPE ST_Vector3D : STRUCT lrX : LREAL; lrY : LREAL; lrZ : LREAL; END_STRUCT END_TYPE
+"""
+
+_OUTPUTS = "VAR_OUTPUT q_etDiag : GD.ET_Diag; q_etDiagExt : ROB.ET_DiagExt; q_sMsg : STRING(80);"
+ROB = f"""
+{{attribute 'qualified_only'}}
+TYPE ET_DiagExt : (NothingMore); END_TYPE
+INTERFACE IF_UserTransformation3Ax EXTENDS __SYSTEM.IQueryInterface
+METHOD Direct
+VAR_INPUT i_lrPositionA : LREAL; i_lrPositionB : LREAL; i_lrPositionC : LREAL; END_VAR
+{_OUTPUTS} q_stCoordinate : PDL.ST_Vector3D; END_VAR
+END_METHOD
+METHOD Inverse
+VAR_INPUT i_stRefCoordinate : PDL.ST_Vector3D; END_VAR
+{_OUTPUTS} q_lrRefPositionA : LREAL; q_lrRefPositionB : LREAL; q_lrRefPositionC : LREAL; END_VAR
+END_METHOD
+END_INTERFACE
+INTERFACE IF_UserTransformation6Ax EXTENDS __SYSTEM.IQueryInterface
+METHOD Direct
+VAR_INPUT
+  i_lrPositionA : LREAL; i_lrPositionB : LREAL; i_lrPositionC : LREAL;
+  i_lrPositionD : LREAL; i_lrPositionE : LREAL; i_lrPositionF : LREAL;
+END_VAR
+{_OUTPUTS} q_stCoordinate : PDL.ST_Vector3D; q_stOrientation : PDL.ST_Vector3D; END_VAR
+END_METHOD
+METHOD Inverse
+VAR_INPUT i_stRefCoordinate : PDL.ST_Vector3D; i_stRefOrientation : PDL.ST_Vector3D; END_VAR
+{_OUTPUTS}
+  q_lrRefPositionA : LREAL; q_lrRefPositionB : LREAL; q_lrRefPositionC : LREAL;
+  q_lrRefPositionD : LREAL; q_lrRefPositionE : LREAL; q_lrRefPositionF : LREAL;
+END_VAR
+END_METHOD
+END_INTERFACE
+"""
+
 # OrientationSpace.vU starts as (0, 0, 1); the dialect has no initialiser for structures.
 EXTRA_INITIALISATION = {"OrientationSpace": ["self.vU.dZ = 1.0"]}
 
@@ -108,7 +148,7 @@ EXTRA_INITIALISATION = {"OrientationSpace": ["self.vU.dZ = 1.0"]}
 def texts(max_config_data: int) -> dict[str, str]:
     """Namespace -> Structured Text, in the order in which they build on each other."""
     trafo = TRAFO.replace("{max_config_data}", str(max_config_data))
-    return {"SM3_Error": SM3_ERROR, "SM3M": SM3M, "TRAFO": trafo}
+    return {"SM3_Error": SM3_ERROR, "SM3M": SM3M, "TRAFO": trafo, "GD": GD, "PDL": PDL, "ROB": ROB}
 
 
 class MatrixAccess:

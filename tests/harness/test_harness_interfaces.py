@@ -1,7 +1,5 @@
 """Interfaces of a text: variables that refer to blocks, calls through them, and the query for one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """A text on others that are translated already is what it is with all of them at once."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.harness.layers import Texts, _at_once, layer_of

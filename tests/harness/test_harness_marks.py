@@ -1,7 +1,5 @@
 """Which statements ran is known: one by one, and only while somebody watches."""
 
-from __future__ import annotations
-
 import pytest
 
 from .library import compile_st

@@ -5,8 +5,6 @@ that could hide it (a divisor, a comparison, an argument). Sums, products and di
 and NaNs on, so one test at their end finds the same faults as a test after every operation.
 """
 
-from __future__ import annotations
-
 from . import ast, constants, python_names
 from . import st_types as types
 from .check_builtins import REAL_FUNCTIONS
@@ -19,7 +17,7 @@ from .lexical import QUERY
 
 _COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
 _LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}  # these evaluate both sides, as Structured Text does
-_CHOICES = {"MIN": "minimum", "MAX": "maximum", "SEL": "selected", "LIMIT": "limited"}
+_CHOICES = {"MIN": "minimum", "MAX": "maximum", "SEL": "selected", "LIMIT": "limited", "LEFT": "left"}
 
 
 class Expressions:

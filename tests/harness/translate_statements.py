@@ -1,7 +1,5 @@
 """Python source of checked statements and of the frame round them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from . import ast, constants, python_names

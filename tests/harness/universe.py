@@ -7,7 +7,7 @@ from . import st_types as types
 from .faults import Place, StError
 from .lexical import SYSTEM
 
-LIBRARIES = ("TRAFO", "SM3M", "SM3_Error")
+LIBRARIES = ("TRAFO", "SM3M", "SM3_Error", "GD", "PDL", "ROB")
 
 
 class Universe:

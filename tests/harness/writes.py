@@ -11,6 +11,8 @@ from .faults import StError
 
 WRITERS = ("Initialize", "AxisSettings")
 """The methods that may change an instance: all others are called by several tasks at once."""
+REFERENCE, ITS_WRITERS = "lastAxes", ("Direct", "Inverse")
+"""What a user transformation of PacDrive keeps: the robot calls it in one task."""
 READERS = ("ReadInputs", "Check", "ReadLimits")
 """What Initialize alone calls, and what that calls: see `tests/text/contract/test_writes.py`."""
 
@@ -74,7 +76,8 @@ def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) 
         raise StError(node.at, f"a method writes the input {variable.name}")
     if scope.block is not None and runs_by_its_body(scope.block):
         return
-    if scope.is_method and scope.owner.lower() not in map(str.lower, (*WRITERS, *READERS)):
+    writers = ITS_WRITERS if variable.name == REFERENCE else (*WRITERS, *READERS)
+    if scope.is_method and scope.owner.lower() not in map(str.lower, writers):
         raise StError(node.at, f"only {' and '.join(WRITERS)} may write the instance variable {variable.name}")
     block = scope.block
     if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":

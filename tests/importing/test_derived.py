@@ -15,18 +15,9 @@ from tests.importing.robots import COLLECTION, File, written
 from tests.machines.made import built_of, imported_class
 
 SOLUTIONS = {
-    "KR 16": 8,
-    "KR 120": 8,
-    "KR 210": 8,
-    "iiwa": 8,
-    "Puma 560": 8,
-    "UR5e": 8,
-    "Fanuc": 8,
-    "Staubli": 8,
-    "AL5D": 4,
-    "IRB 140": 8,
-    "xArm6": 8,
-}
+    "KR 16": 8, "KR 120": 8, "KR 210": 8, "iiwa": 8, "Puma 560": 8, "UR5e": 8, "Fanuc": 8, "Staubli": 8, "AL5D": 4,
+    "IRB 140": 8, "xArm6": 8,
+}  # fmt: skip
 """The IRB 140 and the xArm6 by the root finder."""
 FEWEST_DIGITS = 4
 """Of pi in the files of `WRITTEN`: with more digits their descriptions are the same (`test_urdf`)."""

@@ -94,22 +94,13 @@ MODEL = """<mujoco><compiler angle="radian"/><worldbody>
         <body name="d" pos="0.3 0.02 0" {}/></body></body></body></worldbody></mujoco>"""
 SQUARE = ('euler="1.5708 0 0"', 'axisangle="-1 0 0 1.5708"', 'quat="0.7071 0.7071 0 0"', 'xyaxes="1 0 0 0 0 1"')
 INCLINED = (
-    'euler="0 0 0.5236"',
-    'axisangle="0 0 2 0.524"',
-    'quat="0.9659 0 0 0.2588"',
-    'quat="-0.965926 0 0 -0.258819"',
-    'xyaxes="0.866 0.5 0 -0.5 0.866 0"',
-    'quat="0.2706 0.6533 0.2706 0.6533"',
-)
+    'euler="0 0 0.5236"', 'axisangle="0 0 2 0.524"', 'quat="0.9659 0 0 0.2588"', 'quat="-0.965926 0 0 -0.258819"',
+    'xyaxes="0.866 0.5 0 -0.5 0.866 0"', 'quat="0.2706 0.6533 0.2706 0.6533"',
+)  # fmt: skip
 NOT_SIMPLE = (
-    'euler="0.0001 0 0"',
-    'axisangle="0 0 1 0.5231"',
-    'axisangle="0 0.0001 1 0.5236"',
-    'quat="1 0.0001 0 0"',
-    'quat="0.9659 0.0001 0 0.2588"',
-    'xyaxes="1 0.0001 0 0 1 0"',
-    'quat="0.97 0 0 0.26"',
-)
+    'euler="0.0001 0 0"', 'axisangle="0 0 1 0.5231"', 'axisangle="0 0.0001 1 0.5236"', 'quat="1 0.0001 0 0"',
+    'quat="0.9659 0.0001 0 0.2588"', 'xyaxes="1 0.0001 0 0 1 0"', 'quat="0.97 0 0 0.26"',
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("given_", [*SQUARE, *INCLINED, *NOT_SIMPLE])

@@ -17,18 +17,10 @@ pytestmark = pytest.mark.slow
 
 FILES = Path(__file__).parent / "files"
 SOLUTIONS = {
-    "namespace_and_tabs.urdf": 4,
-    "axis_left_out.urdf": 2,
-    "same_names.urdf": 2,
-    "mixed_decimals.urdf": 8,
-    "inclined_wrist.urdf": 8,
-    "degrees_and_classes.xml": 4,
-    "short_quaternions.xml": 12,
-    "frames.xml": 2,
-    "includes.xml": 2,
-    "three_slides.xml": 2,
-    "directions.xml": 4,
-}
+    "namespace_and_tabs.urdf": 4, "axis_left_out.urdf": 2, "same_names.urdf": 2, "mixed_decimals.urdf": 8,
+    "inclined_wrist.urdf": 8, "degrees_and_classes.xml": 4, "short_quaternions.xml": 12, "frames.xml": 2,
+    "includes.xml": 2, "three_slides.xml": 2, "directions.xml": 4,
+}  # fmt: skip
 TIPS = {"degrees_and_classes.xml": "tcp", "frames.xml": "t", "short_quaternions.xml": "tip"}
 SLOW = ("mixed_decimals.urdf", "inclined_wrist.urdf", "short_quaternions.xml")
 FOR_THE_OTHER_READER: Mapping[str, tuple[tuple[str, str], ...]] = {

@@ -5,8 +5,6 @@ smallest margin of the pose. Where that margin is below `SINGULAR`, axes are not
 to one frame.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -29,12 +27,15 @@ Answer = dict[str, Any]
 Call = list[Any]
 
 
-def calls_of(question: Answer) -> list[Call]:
-    """The calls that a question of the corpus asks for; none where it asks for what JavaScript has not."""
+def calls_of(question: Answer, rows: int) -> list[Call]:
+    """The calls that a question of the corpus asks for; none where it asks for what JavaScript has not. rows: of the
+    Jacobian.
+    """
     if question["call"] == "forward":
         start = [_frame(question["start"])] if "start" in question else []
         axes = question["axes"]
-        return [[call, axes, *start] for call in ("forward", "singularity", "jacobian")]
+        plain = [[call, axes, *start] for call in ("forward", "singularity", "jacobian")]
+        return [*plain, *([call, axes, *given, *start] for call, given in _motions(question, rows))]
     if question["call"] == "inverse":
         frame, reference = _frame(question["frame"]), question["reference"]
         named = [["inverse", frame, given, reference] for given in question["configurations"]]
@@ -42,14 +43,27 @@ def calls_of(question: Answer) -> list[Call]:
     return []
 
 
+def _motions(question: Answer, rows: int) -> list[tuple[str, list[list[float]]]]:
+    """The calls for the motion of the axes, with what each is given after these. An FMU has none."""
+    if not _asks_all(question):
+        return []
+    speeds, rate = ([0.5 * (2 + k) for k, _ in enumerate(question["axes"])], [-3.0 * (2 + k) for k in range(rows)])
+    return [("axisVelocities", [rate]), ("axisAccelerations", [speeds, rate])]
+
+
 def _asks_all(question: Answer) -> bool:
-    """Whether all branches are asked for together: an FMU has no such call."""
+    """Whether all branches are asked for together, and motions of the axes: an FMU has no such calls."""
     return question.get("all", True) is True
 
 
 def _of_axes(question: Answer) -> list[Any]:
     """The arguments of a call that takes axes, and the start where the question has one."""
     return [question[key] for key in ("axes", "start") if key in question]
+
+
+def _start_of(question: Answer) -> Answer:
+    """The start of a question that has one, as a keyword."""
+    return {"start": question["start"]} if "start" in question else {}
 
 
 def _frame(frame: Sequence[Any]) -> Answer:
@@ -80,6 +94,8 @@ class Comparison:
             self._forward(question, next(answers))
             self._singularity(question, next(answers))
             self._jacobian(question, next(answers))
+            for call, given in _motions(question, len(self.robot.made.JACOBIAN_ROWS)):
+                self._motion(question, call, given, next(answers))
         elif question["call"] == "inverse":
             if _asks_all(question):
                 self._slots(question, next(answers))
@@ -134,6 +150,22 @@ class Comparison:
         for row, other in zip(expected, answer["rows"], strict=True):
             self._reals("jacobian", row, other, size, margin)
 
+    def _motion(self, question: Answer, call: str, given: list[list[float]], answer: Answer) -> None:
+        """Velocities and accelerations of the axes: the margin divides the error of a pose for each derivative."""
+        words = {"axisVelocities": "axis_velocities", "axisAccelerations": "axis_accelerations"}
+        expected = self._asked(words[call], question["axes"], *given, **_start_of(question))
+        is_refused = isinstance(expected, softkin.KinematicsError)
+        if is_refused and expected.status is not softkin.Status.IMPOSSIBLE:
+            self._same_status(call, expected, answer)
+            return
+        margin = self._margin(question["axes"])
+        if abs(margin - 1e-3) < ROUNDED or not self._same_status(call, expected, answer):
+            return
+        size = max((1.0, self.robot.reach, *map(abs, expected)))
+        (found,) = (answer[key] for key in ("velocities", "accelerations") if key in answer)
+        self._equal(f"{call}: axes", len(expected), len(found))
+        self._reals(call, expected, found, size, margin**3)
+
     def _slots(self, question: Answer, answer: Answer) -> None:
         frame, reference = question["frame"], question["reference"]
         expected = self._asked("inverse_all", frame, reference)
@@ -182,12 +214,12 @@ class Comparison:
             self.sentences += 1
             self._equal(f"{place}, in words", why.in_words, answer["words"])
 
-    def _asked(self, call: str, *given: Any) -> Any:
+    def _asked(self, call: str, *given: Any, **start: Any) -> Any:
         """The answer of the package, or its refusal."""
-        key = call, repr(given)
+        key = call, repr((given, start))
         if key not in self.known:
             try:
-                self.known[key] = getattr(self.robot.made, call)(*given)
+                self.known[key] = getattr(self.robot.made, call)(*given, **start)
             except softkin.KinematicsError as error:
                 self.known[key] = error
         return self.known[key]
@@ -249,13 +281,15 @@ def compared(
 ) -> list[Comparison]:
     """The machines of a recording, each compared. ask: the language; said: a question as it can be put there."""
     asked = [[q for q in map(said, part["asked"]) if q is not None] for part in recording]
+    robots = [robot(part["recipe"]) for part in recording]
+    rows = [len(one.made.JACOBIAN_ROWS) for one in robots]
     machines = [
-        {"parameters": part["recipe"][0]["parameters"], "calls": [call for q in own for call in calls_of(q)]}
-        for part, own in zip(recording, asked, strict=True)
+        {"parameters": part["recipe"][0]["parameters"], "calls": [call for q in own for call in calls_of(q, count)]}
+        for part, own, count in zip(recording, asked, rows, strict=True)
     ]
     found = []
-    for part, own, answer in zip(recording, asked, ask(machines), strict=True):
-        one = Comparison(robot(part["recipe"]))
+    for made, own, answer in zip(robots, asked, ask(machines), strict=True):
+        one = Comparison(made)
         assert answer["made"] == {"status": 0}
         answers = iter(answer["found"])
         for question in own:

@@ -1,7 +1,5 @@
 """The modules of a mechanism, written into a folder for this run."""
 
-from __future__ import annotations
-
 import atexit
 import shutil
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Node.js, which a wheel of PyPI brings: one process that answers all questions of a test run."""
 
-from __future__ import annotations
-
 import atexit
 import json
 import subprocess

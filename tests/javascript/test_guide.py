@@ -1,7 +1,5 @@
 """The program in docs/JAVASCRIPT.md does what its comments say."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

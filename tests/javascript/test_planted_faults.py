@@ -1,7 +1,5 @@
 """A wrong text is found out: each fault is planted into what is written, and the comparison with Python notices it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 

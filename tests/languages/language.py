@@ -1,7 +1,5 @@
 """C, JavaScript and FMUs: how a machine is written in each, and how it is asked."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

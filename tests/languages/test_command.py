@@ -1,8 +1,6 @@
 """`softkin derive … --language` writes the folder of that language, the same every time, and leaves what stands beside
 it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

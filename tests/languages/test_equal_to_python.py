@@ -1,8 +1,6 @@
 """Every mechanism answers in C, in JavaScript and as an FMU as in Python: at every pose of the corpus, singular, beyond
 limits, or garbage."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.corpus.dimensions import DIMENSIONS

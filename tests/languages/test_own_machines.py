@@ -1,7 +1,5 @@
 """Machines of a user's own, in C and in JavaScript as in Python: numbers for lengths, held joints, natural names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

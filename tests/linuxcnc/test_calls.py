@@ -326,8 +326,9 @@ def test_garbage(name: str) -> None:
         joints = machine.module.inverse(pose, [number() for _ in range(count)], rng.choice((0, 1, 2**64 - 1)))
         assert joints is None or np.isfinite(joints).all()
         assert joints is None or all(abs(pose[letter]) <= 1e9 for letter in letters)
-        rates: Any = machine.module.jacobian(axes, pose)
-        assert rates is None or np.isfinite(rates).all()
+        if not named(name).followed_turns:  # docs/LINUXCNC.md: one that follows a pitch has no Jacobian
+            rates: Any = machine.module.jacobian(axes, pose)
+            assert rates is None or np.isfinite(rates).all()
 
 
 def test_a_module_by_itself() -> None:

@@ -10,13 +10,18 @@ import pytest
 
 from tests.linuxcnc.machine import NAMES, Array, Axes, Machine, machine_of, regular
 from tests.linuxcnc.module import LETTERS, MOST_JOINTS, Pose
+from tests.mechanisms import named
 
 STEP = 1e-4
 """Degrees and millimetres."""
 POSES, LEAST = 4, 0.1
 
 
-@pytest.mark.parametrize("name", NAMES)
+FOLLOWED = [name for name in NAMES if named(name).followed_turns]
+"""Machines that follow a pitch: their poses have more letters than the Jacobian has rows."""
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in FOLLOWED])
 def test_rates(name: str) -> None:
     """A joint that moves alone has the rate 1, the others 0; and the inverse moves as the columns say."""
     machine = machine_of(name)
@@ -62,6 +67,12 @@ def _by_letters(machine: Machine, axes: Axes, pose: Pose, flags: int) -> list[tu
         if ends[0] is not None and ends[1] is not None:
             found.append((k, (np.array(ends[1]) - np.array(ends[0])) / (2.0 * STEP)))
     return found
+
+
+@pytest.mark.parametrize("name", FOLLOWED)
+def test_a_machine_that_follows_a_pitch_has_no_rates(name: str) -> None:
+    """As docs/LINUXCNC.md says."""
+    assert not hasattr(machine_of(name).module.library, "kinematicsJacobian")
 
 
 def test_singular() -> None:

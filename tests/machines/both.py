@@ -1,14 +1,27 @@
 """One machine in Python and in Structured Text: both give the same answers, or both refuse."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import softkin
 from softkin import KinematicsError
 
+from derive.description.mechanism import Mechanism
+from derive.pipeline import Built
+from tests.machines.made import built_of, imported_class
 from tests.text.controller import OK, Controller
+from tests.text.units import compiled_text
 
 Answer = tuple[softkin.Frame, tuple[int, ...]]
+
+
+def in_both(mechanism: Mechanism, offsets: Mapping[str, float]) -> tuple[Built, softkin.Mechanism, Controller]:
+    """What is derived of a machine of nominal dimensions, and the machine itself in both languages."""
+    built = built_of(mechanism)
+    robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
+    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
+    assert controller.initialise(robot.parameters) == OK
+    return built, robot, controller
 
 
 def forward_in_both(

@@ -1,6 +1,7 @@
 """Machines that are in no catalogue, by the rule that each needs."""
 
 from collections.abc import Mapping
+from functools import partial
 
 from sympy import Integer, cos, pi, sin
 
@@ -25,7 +26,7 @@ from tests.machines.held_machines import FIRST_HELD, HELD
 from tests.machines.searched_machines import POINTS, SEARCHED
 from tests.machines.subset_machines import SWEPT
 from tests.machines.task_machines import TASK_MACHINES, UNNAMED
-from tests.machines.textbook import textbook as _machine
+from tests.machines.textbook import textbook
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
 A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
@@ -40,6 +41,10 @@ L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumer
 L5 = length("link_5", "link 5", nominal=30.0)
 LEAN = angle("lean", "lean of one axis against another", nominal=50.0)
 SLIDES = Tx(X) * Ty(Y) * Tz(Z)
+STOCK = (
+    X, Y, Z, R, A, B, C, A1, A2, A3, A4, A5, PIVOT_X, PIVOT_Y, PIVOT_Z, BESIDE, HEIGHT, L1, L2, L3, L4, L5, LEAN,
+)  # fmt: skip
+_machine = partial(textbook, STOCK)
 
 DIRECTION, TURNED = Task("xyz", Turning.DIRECTION), Task("xyz", Turning.ABOUT_Z)
 POSE = Task("xyz", Turning.FULL)
@@ -52,60 +57,39 @@ def _tilt(joint: Joint) -> tuple[Branch, ...]:
 
 THREE_LENGTHS = {
     "trunnion": _machine(
-        "Trunnion",
-        (X, Y, Z, A, C),
-        Rz(-C) * Ty(-PIVOT_Y) * Tz(-PIVOT_Z) * Rx(-A) * SLIDES,
-        (PIVOT_Y, PIVOT_Z),
-        DIRECTION,
-        _tilt(A),
+        "Trunnion", Rz(-C) * Ty(-PIVOT_Y) * Tz(-PIVOT_Z) * Rx(-A) * SLIDES, DIRECTION, _tilt(A), joints=(X, Y, Z, A, C)
     ),
     "table with B and C": _machine(
-        "TableBc",
-        (X, Y, Z, B, C),
-        Rz(C) * Tx(PIVOT_X) * Tz(PIVOT_Z) * Ry(B) * SLIDES,
-        (PIVOT_X, PIVOT_Z),
-        DIRECTION,
-        _tilt(B),
+        "TableBc", Rz(C) * Tx(PIVOT_X) * Tz(PIVOT_Z) * Ry(B) * SLIDES, DIRECTION, _tilt(B), joints=(X, Y, Z, B, C)
     ),
     "table with an oblique axis": _machine(
         "Nutating",
-        (X, Y, Z, B, C),
         Rz(C) * Tz(PIVOT_Z) * Rx(radians(LEAN)) * Rz(B) * Rx(-radians(LEAN)) * SLIDES,
-        (PIVOT_Z, LEAN),
         DIRECTION,
         _tilt(B),
+        joints=(X, Y, Z, B, C),
     ),
     "oblique slides on a table": _machine(
         "Oblique",
-        (X, Y, Z, C),
         Rz(C) * Tx(X) * Rz(pi / 5) * Ty(Y) * Rx(pi / 7) * Tz(Z) * Rx(-pi / 7) * Rz(-pi / 5),
-        (),
         TURNED,
+        joints=(X, Y, Z, C),
     ),
 }
 
 SQUARES_WITH_LENGTHS = {
     "telescope beside its column": _machine(
-        "BoomTurn",
-        (A1, R, A2),
-        Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
-        (BESIDE, L4),
-        Task("xy", Turning.ABOUT_Z),
-        positive=(R,),
+        "BoomTurn", Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4), Task("xy", Turning.ABOUT_Z), positive=(R,)
     ),
     "telescope that may turn inside out": _machine(
         "BoomBoth",
-        (A1, R, A2),
         Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
-        (BESIDE, L4),
         Task("xy", Turning.ABOUT_Z),
         (branch("boom", R, ahead=+1, behind=-1),),
     ),
     "telescope above its shoulder": _machine(
         "BoomUp",
-        (A1, A2, R),
         Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(BESIDE) * Tx(R),
-        (BESIDE, HEIGHT),
         Task("xyz"),
         (branch("shoulder", R * cos(A2) + BESIDE * sin(A2), front=+1, back=-1),),
         positive=(R,),
@@ -114,39 +98,26 @@ SQUARES_WITH_LENGTHS = {
 
 PARAMETERS_DECIDE = {
     "skewed rail": _machine(
-        "Skewed",
-        (X, Y, Z),
-        Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z),
-        (LEAN,),
-        Task("xyz"),
-        offset_interface=True,
+        "Skewed", Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z), Task("xyz"), offset_interface=True
     ),
     "rails in a wedge": _machine(
         "Wedge",
-        (X, Y, Z),
         Ry(radians(LEAN)) * Tx(X) * Ry(-2 * radians(LEAN)) * Tx(Z) * Ry(radians(LEAN)) * Ty(Y),
-        (LEAN,),
         Task("xyz"),
+        joints=(X, Y, Z),
     ),
 }
 
 ONE_ROOT = {
     "arm whose elbow bends one way": _machine(
         "OneElbow",
-        (A1, A2, A3),
         Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3),
-        (HEIGHT, L2, L3),
         Task("xyz"),
         (branch("shoulder", L2 * sin(A2) + L3 * cos(A2 + A3), front=+1, back=-1),),
         positive=(cos(A3),),
     ),
     "SCARA that bends to the left alone": _machine(
-        "OneScara",
-        (A1, A2, Z, A4),
-        Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4),
-        (L1, L2),
-        TURNED,
-        positive=(-sin(A2),),
+        "OneScara", Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4), TURNED, positive=(-sin(A2),)
     ),
 }
 
@@ -154,19 +125,17 @@ _SWING = (branch("side", sin(A2), right=+1, left=-1), branch("lean", cos(A2), up
 
 CONSTANT_RADIUS = {
     "jib that swings on a hoist": _machine(
-        "Jib", (A1, A2, Z), Tz(Z) * Rz(A1) * Ry(A2) * Tz(L1), (L1,), Task("xyz"), _SWING
+        "Jib", Tz(Z) * Rz(A1) * Ry(A2) * Tz(L1), Task("xyz"), _SWING, joints=(A1, A2, Z)
     ),
     "jib with a number for its length": _machine(
-        "JibNumber", (A1, A2, Z), Tz(Z) * Rz(A1) * Ry(A2) * Tz(Integer(300)), (), Task("xyz"), _SWING
+        "JibNumber", Tz(Z) * Rz(A1) * Ry(A2) * Tz(Integer(300)), Task("xyz"), _SWING, joints=(A1, A2, Z)
     ),
 }
 
 OTHERS = {
     "palletizer with both motors at the base": _machine(
         "BaseMotors",
-        (A1, A2, A3, A4),
         Tz(HEIGHT) * Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3 - A2) * Tx(L3) * Ry(-A3) * Tx(L4) * Rz(A4),
-        (HEIGHT, PIVOT_X, L2, L3, L4),
         TURNED,
         (
             branch("shoulder", PIVOT_X + L2 * sin(A2) + L3 * cos(A3) + L4, front=+1, back=-1),
@@ -175,18 +144,11 @@ OTHERS = {
         offset_interface=True,
     ),
     "numbers for lengths": _machine(
-        "Numbers",
-        (A1, A2, Z, A4),
-        Rz(A1) * Tx(Integer(250)) * Rz(A2) * Tx(Integer(200)) * Tz(Z) * Rz(A4),
-        (),
-        TURNED,
-        (ELBOW,),
+        "Numbers", Rz(A1) * Tx(Integer(250)) * Rz(A2) * Tx(Integer(200)) * Tz(Z) * Rz(A4), TURNED, (ELBOW,)
     ),
     "flange that turns against two axes": _machine(
         "Level",
-        (A1, A2, A3, A4),
         Rz(A1) * Tx(PIVOT_X) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Ry(-A2 - A3) * Tx(L4) * Rz(A4),
-        (PIVOT_X, L2, L3, L4),
         TURNED,
         (
             branch("shoulder", PIVOT_X + L2 * sin(A2) + L3 * cos(A2 + A3) + L4, front=+1, back=-1),
@@ -196,9 +158,7 @@ OTHERS = {
 }
 
 _ARM_AND_TELESCOPE = (
-    (A1, A2, R),
     Rz(A1) * Tx(L1) * Rz(A2) * Tx(R),
-    (L1,),
     Task("xy", Turning.ABOUT_Z),
     (branch("arm", cos(A2), ahead=+1, behind=-1),),
 )
@@ -207,9 +167,7 @@ ALONG_A_DIRECTION = {
     "telescope in front of an arm that may turn inside out": _machine("ArmTelescopeBoth", *_ARM_AND_TELESCOPE),
     "telescope that a tilting arm points": _machine(
         "PointingTelescope",
-        (A1, Y, A2, A3, R),
         Tz(HEIGHT) * Rz(A1) * Ty(Y) * Ry(A2) * Tz(L2) * Ry(A3) * Tz(R),
-        (HEIGHT, L2),
         DIRECTION,
         (branch("tilt", sin(A2 + A3), positive=+1, negative=-1), branch("arm", cos(A3), ahead=+1, behind=-1)),
     ),
@@ -218,17 +176,13 @@ ALONG_A_DIRECTION = {
 HALF_TURNS = {
     "SCARA below a ceiling": _machine(
         "CeilingScara",
-        (A1, A2, Z, A4),
         Tz(HEIGHT) * Rx(pi) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4) * Tx(L3),
-        (HEIGHT, L1, L2, L3),
         TURNED,
         (ELBOW,),
     ),
     "SCARA by its table": _machine(
         "TableOfScara",
-        (A1, A2, Z, A4),
         denavit_hartenberg((A1, HEIGHT, L1, 0), (A2, 0, L2, pi), (0, Z, 0, 0), (A4, L4, 0, 0)),
-        (HEIGHT, L1, L2, L4),
         TURNED,
         (ELBOW,),
     ),
@@ -237,23 +191,20 @@ HALF_TURNS = {
 ACROSS = {
     "ram that a head may lay flat": _machine(
         "RamHead",
-        (X, Y, A, R, C),
         Tx(X) * Ty(Y) * Rz(C) * Tx(PIVOT_X) * Rx(A) * Ty(PIVOT_Y) * Tz(-R) * Tz(-L4),
-        (PIVOT_X, PIVOT_Y, L4),
         DIRECTION,
         _tilt(A),
+        joints=(X, Y, A, R, C),
     ),
     "slide that turns on a slide": _machine(
-        "TurningSlide", (Y, C, X), Ty(Y) * Rz(C) * Tx(X) * Ty(BESIDE), (BESIDE,), Task("xy", Turning.ABOUT_Z)
+        "TurningSlide", Ty(Y) * Rz(C) * Tx(X) * Ty(BESIDE), Task("xy", Turning.ABOUT_Z)
     ),
 }
 
 DISTANCES_ALONE = {
     "slide on a rocker": _machine(
         "RockerSlide",
-        (A1, A2, Y),
         Rx(A1) * Ry(A2) * Tx(PIVOT_X) * Tz(BESIDE) * Ty(Y),
-        (PIVOT_X, BESIDE),
         Task("xyz"),
         (
             branch("rocker", BESIDE * cos(A2) - PIVOT_X * sin(A2), ahead=+1, behind=-1),
@@ -261,29 +212,20 @@ DISTANCES_ALONE = {
         ),
     ),
     "slide on a swivel": _machine(
-        "SwivelSlide",
-        (A1, Y),
-        Rz(A1) * Tx(PIVOT_X) * Ty(Y),
-        (PIVOT_X,),
-        Task("xy"),
-        (branch("slide", Y, left=+1, right=-1),),
+        "SwivelSlide", Rz(A1) * Tx(PIVOT_X) * Ty(Y), Task("xy"), (branch("slide", Y, left=+1, right=-1),)
     ),
 }
 
 SEEN_FROM_A_KNOWN_FRAME = {
     "arm beside the rail that it turns about": _machine(
         "ShoulderRail",
-        (X, A1, A2),
         Tx(X) * Rx(A1) * Ty(L1) * Rz(A2) * Tz(BESIDE) * Tx(L2),
-        (L1, BESIDE, L2),
         Task("xyz"),
         (branch("shoulder", L1 + L2 * sin(A2), front=+1, back=-1), branch("elbow", cos(A2), ahead=+1, behind=-1)),
     ),
     "telescope on a rocker that points the tool": _machine(
         "RockerTelescope",
-        (A1, A2, Y, R, A5),
         Rz(A1) * Ry(-A2) * Ty(Y) * Tz(L1) * Tx(R) * Ry(A5),
-        (L1,),
         DIRECTION,
         (branch("tilt", sin(A5 - A2), positive=+1, negative=-1), branch("telescope", R, ahead=+1, behind=-1)),
     ),
@@ -292,35 +234,17 @@ SEEN_FROM_A_KNOWN_FRAME = {
 TURNS_ABOUT_Y = {
     "boom on a carriage": _machine(
         "CarriageBoom",
-        (X, Y, A1),
         Tx(X) * Ty(Y) * Tz(HEIGHT) * Rz(radians(LEAN)) * Ry(-A1) * Tx(L1) * Ry(pi / 2),
-        (HEIGHT, LEAN, L1),
         Task("xyz"),
         (branch("boom", cos(A1), forward=+1, backward=-1),),
     )
 }
 
 MACHINES: Mapping[str, Mechanism] = {
-    **SEEN_FROM_A_KNOWN_FRAME,
-    **TURNS_ABOUT_Y,
-    **DISTANCES_ALONE,
-    **ACROSS,
-    **HALF_TURNS,
-    **ALONG_A_DIRECTION,
-    **CONSTANT_RADIUS,
-    **THREE_LENGTHS,
-    **SQUARES_WITH_LENGTHS,
-    **PARAMETERS_DECIDE,
-    **HELD,
-    **FIRST_HELD,
-    **ONE_ROOT,
-    **OTHERS,
-    **SEARCHED,
-    **CHAINS,
-    **NUMBERS,
-    **TASK_MACHINES,
-    **SWEPT,
-}
+    **SEEN_FROM_A_KNOWN_FRAME, **TURNS_ABOUT_Y, **DISTANCES_ALONE, **ACROSS, **HALF_TURNS, **ALONG_A_DIRECTION,
+    **CONSTANT_RADIUS, **THREE_LENGTHS, **SQUARES_WITH_LENGTHS, **PARAMETERS_DECIDE, **HELD, **FIRST_HELD, **ONE_ROOT,
+    **OTHERS, **SEARCHED, **CHAINS, **NUMBERS, **TASK_MACHINES, **SWEPT,
+}  # fmt: skip
 SOLUTIONS: Mapping[str, int] = {
     **{name: 2 ** len(m.branches) for name, m in MACHINES.items()},
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),

@@ -1,11 +1,13 @@
 """Machines with a joint that is held: a rail under an arm, a turn within one."""
 
+from functools import partial
+
 from sympy import cos, sin
 
 from derive.frames import Rx, Ry, Rz, Tx, Txyz, Tz
 from derive.mechanism import Task, Turning, branch, distance, length, linear, rotary
 from tests.machines.chain_machines import FROM_FLANGE
-from tests.machines.textbook import textbook as _machine
+from tests.machines.textbook import textbook
 
 X, Z = (linear(name, f"slide {name}") for name in ("X", "Z"))
 A1, A2, A3, A4, A5, A6, E1 = (rotary(name, f"turn {name}") for name in ("A1", "A2", "A3", "A4", "A5", "A6", "E1"))
@@ -19,33 +21,21 @@ ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 M_HEIGHT = length("height_m", "base to shoulder", nominal=0.36)
 M_UPPER = length("link_u", "upper arm", nominal=0.42)
 M_FORE = length("link_f", "forearm", nominal=0.4)
+_machine = partial(
+    textbook, (X, Z, A1, A2, A3, A4, A5, A6, E1, PIVOT_X, HEIGHT, L1, L2, L3, L4, L5, M_HEIGHT, M_UPPER, M_FORE)
+)
 
 HELD = {
     **FROM_FLANGE,
     "rail and arm with two links": _machine(
-        "RailArm",
-        (X, A1, A2),
-        Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-        (L1, L2),
-        Task("xy"),
-        (ELBOW,),
-        held=(X,),
-        offset_interface=True,
+        "RailArm", Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2), Task("xy"), (ELBOW,), held=(X,), offset_interface=True
     ),
     "SCARA on a rail": _machine(
-        "ScaraRail",
-        (X, A1, A2, Z, A4),
-        Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4),
-        (L1, L2),
-        TURNED,
-        (ELBOW,),
-        held=(X,),
+        "ScaraRail", Tx(X) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z) * Rz(A4), TURNED, (ELBOW,), held=(X,)
     ),
     "arm on a track": _machine(
         "Track",
-        (X, A1, A2, A3, A4, A5, A6),
         Tx(X) * Rz(A1) * Tz(HEIGHT) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Rx(A4) * Ry(A5) * Rx(A6) * Tx(L4),
-        (HEIGHT, L2, L3, L4),
         POSE,
         (
             branch("shoulder", L2 * sin(A2) + L3 * cos(A2 + A3), front=+1, back=-1),
@@ -56,9 +46,7 @@ HELD = {
     ),
     "seven axes": _machine(
         "Seven",
-        (A1, A2, E1, A3, A4, A5, A6),
         Rz(A1) * Tz(L1) * Ry(A2) * Rz(E1) * Tz(L2) * Ry(A3) * Rz(A4) * Tz(L3) * Ry(A5) * Rz(A6) * Tz(L4),
-        (L1, L2, L3, L4),
         POSE,
         (
             branch("elbow", sin(A3), positive=+1, negative=-1),
@@ -70,12 +58,7 @@ HELD = {
         held=(E1,),
     ),
     "arm in metres with a held turn of its upper arm": _machine(
-        "HeldTurn",
-        (A1, A2, E1, A3),
-        Rz(A1) * Tz(M_HEIGHT) * Ry(A2) * Rz(E1) * Tz(M_UPPER) * Ry(A3) * Tz(M_FORE),
-        (M_HEIGHT, M_UPPER, M_FORE),
-        Task("xyz"),
-        held=(E1,),
+        "HeldTurn", Rz(A1) * Tz(M_HEIGHT) * Ry(A2) * Rz(E1) * Tz(M_UPPER) * Ry(A3) * Tz(M_FORE), Task("xyz"), held=(E1,)
     ),
 }
 
@@ -83,9 +66,7 @@ FIRST_HELD = {
     **FROM_FLANGE,
     "seven axes beside each other, the first held": _machine(
         "SevenBeside",
-        (E1, A1, A2, A3, A4, A5, A6),
         Rz(E1) * Txyz(PIVOT_X, 0, L1) * Rx(A1) * Rz(A2) * Txyz(0, L5, L2) * Rx(A3) * Tz(L3) * Rz(A4) * Rx(A5) * Rz(A6),
-        (PIVOT_X, L1, L2, L3, L5),
         POSE,
         (
             branch("shoulder", cos(A2) * (L3 * sin(A3) - L5), front=+1, back=-1),

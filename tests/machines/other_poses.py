@@ -21,6 +21,7 @@ from derive.plate.turning import poses_around_home
 from tests.machines.guided import GUIDED
 from tests.machines.made import built_of, imported_class
 from tests.mechanisms import catalogue, kinematics_of
+from tests.orthonormal import rodrigues
 
 Array = NDArray[np.float64]
 OWN = ("Z3 head with slides", "3-RRR on a lift")
@@ -146,8 +147,7 @@ def _moved(frame: Frame, row: str, step: float) -> Frame:
     axis = np.eye(3)["xyz".index(letter)]
     if not kind:
         return Frame(tuple(np.array(frame.position) + step * _size(frame) * axis), frame.rotation)
-    across = np.cross(np.eye(3), axis)
-    turn = np.eye(3) + np.sin(step) * across + (1.0 - np.cos(step)) * across @ across
+    turn = rodrigues(axis, step)
     own = np.array(frame.rotation)
     turned = own @ turn if kind == "tilt" else turn @ own
     return Frame(frame.position, tuple(map(tuple, turned.tolist())))

@@ -31,7 +31,7 @@ LEAN = angle("lean", "lean of the axes of the wrist against each other", nominal
 
 def _arm(name: str, chain: Chain, parameters: tuple[Parameter, ...], branches: tuple[Branch, ...] = ()) -> Mechanism:
     """An arm whose wrist axes miss each other."""
-    return textbook(name, (A1, A2, A3, A4, A5, A6), chain, parameters, Task("xyz", Turning.FULL), branches)
+    return textbook((A1, A2, A3, A4, A5, A6, *parameters), name, chain, Task("xyz", Turning.FULL), branches)
 
 
 _BESIDE = tuple(distance(f"beside_{k}", f"shift {k} beside the axes", nominal=50.0) for k in range(1, 5))
@@ -40,7 +40,7 @@ REACH = length("reach_a", "last axis to the point", nominal=200.0)
 
 def _point(name: str, chain: Chain) -> Mechanism:
     """An arm with three axes that miss each other."""
-    return textbook(name, (A1, A2, A3), chain, (*_BESIDE, REACH), Task("xyz"))
+    return textbook((A1, A2, A3, *_BESIDE, REACH), name, chain, Task("xyz"))
 
 
 _B1, _B2, _B3, _B4 = _BESIDE
@@ -54,6 +54,7 @@ POINTS = {
 }
 """Arms that turn a point: with a shift of zero a branch may meet the next one where two solutions of it meet."""
 
+_BENT = Rz(radians(LEAN)) * Rx(A5) * Tx(M_ELBOW) * Rz(-radians(LEAN))
 SEARCHED = {
     "arm whose wrist goes sideways": _arm(
         "Sideways",
@@ -62,19 +63,7 @@ SEARCHED = {
     ),
     "arm in metres with a bent wrist and a shoulder beside its axis": _arm(
         "Bent",
-        Rz(A1)
-        * Ty(BASE)
-        * Ry(A2)
-        * Tz(M_UPPER)
-        * Ry(A3)
-        * Tx(M_FORE)
-        * Rx(A4)
-        * Rz(radians(LEAN))
-        * Rx(A5)
-        * Tx(M_ELBOW)
-        * Rz(-radians(LEAN))
-        * Rx(A6)
-        * Tx(M_FLANGE),
+        Rz(A1) * Ty(BASE) * Ry(A2) * Tz(M_UPPER) * Ry(A3) * Tx(M_FORE) * Rx(A4) * _BENT * Rx(A6) * Tx(M_FLANGE),
         (BASE, M_UPPER, M_FORE, M_ELBOW, M_FLANGE, LEAN),
         (
             branch("shoulder", M_UPPER * sin(A2) + M_FORE * cos(A2 + A3), front=+1, back=-1),

@@ -29,34 +29,23 @@ BESIDE, HEIGHT = (distance(n, n, nominal=v) for n, v in (("beside", 40.0), ("hei
 L1, L2, L3 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 250.0, 80.0), 1))
 ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
-_machine = partial(textbook, family="planar", offset_interface=None)
+_machine = partial(
+    textbook, (S1, S2, A1, A2, A3, C, BESIDE, HEIGHT, L1, L2, L3), family="planar", offset_interface=None
+)
 
 SUBSETS: Mapping[str, Mechanism] = {
     "arm in an upright plane": _machine(
-        "UprightArm",
-        (A1, A2),
-        Tz(HEIGHT) * Ty(BESIDE) * Ry(A1) * Tx(L1) * Ry(A2) * Tx(L2),
-        (HEIGHT, BESIDE, L1, L2),
-        Task("xz"),
-        (ELBOW,),
+        "UprightArm", Tz(HEIGHT) * Ty(BESIDE) * Ry(A1) * Tx(L1) * Ry(A2) * Tx(L2), Task("xz"), (ELBOW,)
     ),
-    "arm on a wall that leans": _machine(
-        "WallArm", (S1, A1), Rx(pi / 2) * Ty(S1) * Rz(A1) * Tx(L1) * Tz(BESIDE), (BESIDE, L1), Task("xz")
-    ),
+    "arm on a wall that leans": _machine("WallArm", Rx(pi / 2) * Ty(S1) * Rz(A1) * Tx(L1) * Tz(BESIDE), Task("xz")),
     "arm in an upright plane that points its tool": _machine(
         "UprightPitch",
-        (A1, A2, A3),
         Ty(BESIDE) * Ry(A1) * Tx(L1) * Ry(A2) * Tx(L2) * Ry(A3) * Tz(L3),
-        (BESIDE, L1, L2, L3),
         Task("xz", Turning.PITCH),
         (ELBOW,),
     ),
-    "crane in a store whose fork turns": _machine(
-        "StoreCrane", (S1, S2, C), Tx(S1) * Tz(S2) * Rz(C), (), Task("xz", Turning.ABOUT_Z)
-    ),
-    "lift that turns": _machine(
-        "TurningLift", (S1, C), Tx(BESIDE) * Tz(S1) * Rz(C) * Tz(L3), (BESIDE, L3), Task("z", Turning.ABOUT_Z)
-    ),
+    "crane in a store whose fork turns": _machine("StoreCrane", Tx(S1) * Tz(S2) * Rz(C), Task("xz", Turning.ABOUT_Z)),
+    "lift that turns": _machine("TurningLift", Tx(BESIDE) * Tz(S1) * Rz(C) * Tz(L3), Task("z", Turning.ABOUT_Z)),
 }
 SWEPT = {name: SUBSETS[name] for name in ("arm in an upright plane", "lift that turns")}
 """Those that the sweeps over all machines take."""

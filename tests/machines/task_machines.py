@@ -1,6 +1,7 @@
 """Machines whose task or whose drives need a rule of their own: pitch, pitch and roll, gears, belts, differentials."""
 
 from collections.abc import Mapping
+from functools import partial
 
 from sympy import cos, sin
 
@@ -18,13 +19,16 @@ from derive.mechanism import (
     rotary,
     transmission,
 )
-from tests.machines.textbook import textbook as _machine
+from tests.machines.textbook import textbook
 
 X, Y, Z = (linear(name, f"slide {name}") for name in ("X", "Y", "Z"))
 A, B, C, A1, A2, A3, A4, A5 = (rotary(name, f"turn {name}") for name in ("A", "B", "C", "A1", "A2", "A3", "A4", "A5"))
 SHOULDER, HEIGHT = (distance(n, n, nominal=v) for n, v in (("shoulder_x", 50.0), ("shoulder_z", 200.0)))
 BESIDE = distance("beside", "how far the plane of the arm is beside its first axis", nominal=40.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 400.0, 350.0, 120.0), 1))
+G1 = transmission("gear_1", "turns of motor 1 per turn of its joint", nominal=3.0)
+G2 = transmission("gear_2", "turns of joint 2 per turn of its motor, against it", nominal=-2.5)
+_machine = partial(textbook, (X, Y, Z, A, B, C, A1, A2, A3, A4, A5, SHOULDER, HEIGHT, BESIDE, L1, L2, L3, L4, G1, G2))
 PITCH, PITCH_ROLL = Task("xyz", Turning.PITCH), Task("xyz", Turning.PITCH_ROLL)
 
 
@@ -37,53 +41,32 @@ _COLUMN = Rz(A1) * Tx(SHOULDER) * Tz(HEIGHT)
 _LINKS = Ry(A2) * Tz(L2) * Ry(A3) * Tz(L3) * Ry(A4) * Tz(L4)
 
 WITH_PITCH = {
-    "arm with four axes": _machine(
-        "FourAxes",
-        (A1, A2, A3, A4),
-        _COLUMN * _LINKS,
-        (SHOULDER, HEIGHT, L2, L3, L4),
-        PITCH,
-        _UPRIGHT,
-        offset_interface=True,
-    ),
+    "arm with four axes": _machine("FourAxes", _COLUMN * _LINKS, PITCH, _UPRIGHT, offset_interface=True),
     "arm with four axes over its column": _machine(
         "OverColumn",
-        (A1, A2, A3, A4),
         Tz(HEIGHT) * Rz(-A1) * Rx(A2) * Ty(L2) * Rx(A3) * Ty(L3) * Rx(A4) * Tz(L4),
-        (HEIGHT, L2, L3, L4),
         PITCH,
         _arm(L2 * cos(A2) + L3 * cos(A2 + A3) - L4 * sin(A2 + A3 + A4), sin(A3)),
     ),
-    "slides and a tilting head": _machine(
-        "TiltingHead", (X, Y, Z, B), Tx(X) * Ty(Y) * Tz(Z) * Ry(B) * Tz(L4), (L4,), PITCH
-    ),
+    "slides and a tilting head": _machine("TiltingHead", Tx(X) * Ty(Y) * Tz(Z) * Ry(B) * Tz(L4), PITCH),
 }
 
 WITH_PITCH_AND_ROLL = {
-    "arm with five axes": _machine(
-        "FiveAxes", (A1, A2, A3, A4, A5), _COLUMN * _LINKS * Rz(A5), (SHOULDER, HEIGHT, L2, L3, L4), PITCH_ROLL,
-        _UPRIGHT,
-    ),
+    "arm with five axes": _machine("FiveAxes", _COLUMN * _LINKS * Rz(A5), PITCH_ROLL, _UPRIGHT),
     "arm with five axes, tool along x": _machine(
         "FiveAlongX",
-        (A1, A2, A3, A4, A5),
         _COLUMN * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3) * Ry(A4) * Tx(L4) * Rx(-A5),
-        (SHOULDER, HEIGHT, L2, L3, L4),
         PITCH_ROLL,
         _arm(SHOULDER + L2 * sin(A2) + L3 * cos(A2 + A3) + L4 * cos(A2 + A3 + A4), cos(A3)),
     ),
     "arm with five axes beside its column": _machine(
         "FiveBeside",
-        (A1, A2, A3, A4, A5),
         Rz(A1) * Ty(BESIDE) * Tz(HEIGHT) * _LINKS * Rz(A5),
-        (BESIDE, HEIGHT, L2, L3, L4),
         PITCH_ROLL,
         _arm(L2 * sin(A2) + L3 * sin(A2 + A3) + L4 * sin(A2 + A3 + A4), sin(A3)),
     ),
-}  # fmt: skip
+}
 
-G1 = transmission("gear_1", "turns of motor 1 per turn of its joint", nominal=3.0)
-G2 = transmission("gear_2", "turns of joint 2 per turn of its motor, against it", nominal=-2.5)
 TURNED, PLANE = Task("xyz", Turning.ABOUT_Z), Task("xyz")
 DIRECTION = Task("xyz", Turning.DIRECTION)
 R1 = rotary("A1", "geared turn A1", ratio=1 / G1.symbol)
@@ -96,89 +79,66 @@ def _bent(angle: object) -> tuple[Branch]:
 
 WITH_GEARS = {
     "SCARA with gears": _machine(
-        "Geared",
-        (A1, A2, Z),
-        Rz(A1 / 3) * Tx(L1) * Rz(A2 / 2) * Tx(L2) * Tz(Z),
-        (L1, L2),
-        PLANE,
-        _bent(A2 / 2),
-        offset_interface=True,
+        "Geared", Rz(A1 / 3) * Tx(L1) * Rz(A2 / 2) * Tx(L2) * Tz(Z), PLANE, _bent(A2 / 2), offset_interface=True
     ),
     "SCARA with gears of any ratio": _machine(
-        "AnyGears",
-        (A1, A2, Z),
-        Rz(A1 / G1) * Tx(L1) * Rz(G2 * A2) * Tx(L2) * Tz(Z),
-        (L1, L2, G1, G2),
-        PLANE,
-        _bent(G2 * A2),
+        "AnyGears", Rz(A1 / G1) * Tx(L1) * Rz(G2 * A2) * Tx(L2) * Tz(Z), PLANE, _bent(G2 * A2)
     ),
     "SCARA whose gears stand at its joints": _machine(
-        "AtJoints", (R1, R2, Z), Rz(R1) * Tx(L1) * Rz(R2) * Tx(L2) * Tz(Z), (L1, L2, G1, G2), PLANE, _bent(R2)
+        "AtJoints",
+        Rz(R1) * Tx(L1) * Rz(R2) * Tx(L2) * Tz(Z),
+        PLANE,
+        _bent(R2),
+        joints=(R1, R2, Z),
+        parameters=(L1, L2, G1, G2),
     ),
     "SCARA whose quill is geared": _machine(
         "GearedQuill",
-        (A1, A2, Z, A4),
         Rz(A1 * 3) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z - 20 * A4 / TURN) * Rz(A4 / 2),
-        (L1, L2),
         TURNED,
         _bent(A2),
+        joints=(A1, A2, Z, A4),
     ),
 }
 
 WITH_SHARED_MOTORS = {
     "CoreXY with C": _machine(
-        "CoreXyC", (A, B, Z, C), Tx((A + B) / 20) * Ty((A - B) / 20) * Tz(Z) * Rz(C), (), TURNED,
-        offset_interface=True,
+        "CoreXyC", Tx((A + B) / 20) * Ty((A - B) / 20) * Tz(Z) * Rz(C), TURNED, offset_interface=True
     ),
     "head on a differential": _machine(
         "Differential",
-        (X, Y, Z, A, B),
         Tx(X) * Ty(Y) * Tz(Z) * Rz((A + B) / 2) * Ry((A - B) / 2) * Tz(L4),
-        (L4,),
         DIRECTION,
         (branch("tilt", sin((A - B) / 2), positive=+1, negative=-1),),
     ),
     "head on a differential without gears": _machine(
         "Doubled",
-        (X, Y, Z, A, B),
         Tx(X) * Ty(Y) * Tz(Z) * Rz(A + B) * Ry(A - B) * Tz(L4),
-        (L4,),
         DIRECTION,
         (branch("tilt", sin(A - B), positive=+1, negative=-1),),
     ),
     "SCARA with a nut and a spline": _machine(
-        "Spline",
-        (A1, A2, A, B),
-        Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(20 * (A - B) / TURN) * Rz(B),
-        (L1, L2),
-        TURNED,
-        _bent(A2),
+        "Spline", Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(20 * (A - B) / TURN) * Rz(B), TURNED, _bent(A2)
     ),
     "wrist with three motors": _machine(
         "ThreeMotors",
-        (X, Y, Z, A1, A2, A3),
         Tx(X) * Ty(Y) * Tz(Z) * Rz(A1) * Ry((A1 + A2) / 2) * Rz(A3 / 3 - A2 / 6) * Tz(L4),
-        (L4,),
         Task("xyz", Turning.FULL),
         (branch("tilt", sin((A1 + A2) / 2), positive=+1, negative=-1),),
     ),
-}  # fmt: skip
+}
 
 WITH_ABSOLUTE_JOINTS = {
     "SCARA with belts": _machine(
         "Belts",
-        (A1, A2, Z, A4),
         Rz(A1) * Tx(L1) * Rz(A2 - A1) * Tx(L2) * Tz(Z) * Rz(A4 - A2),
-        (L1, L2),
         TURNED,
         _bent(A2 - A1),
         offset_interface=True,
     ),
     "arm with its elbow motor on the base, and gears": _machine(
         "GearedBelts",
-        (A1, A2, A3),
         Tz(HEIGHT) * Rz(A1 / 2) * Ry(A2 / 3) * Tz(L2) * Ry(A3 / 4 - A2 / 3) * Tx(L3),
-        (HEIGHT, L2, L3),
         PLANE,
         (
             branch("shoulder", L2 * sin(A2 / 3) + L3 * cos(A3 / 4), front=+1, back=-1),

@@ -17,6 +17,7 @@ from tests.catalogue.loop_machines import LoopClosure
 from tests.machines.both import forward_in_both, inverse_in_both
 from tests.machines.carried import A1, A2, CARRIED, TIP, C, five_bar
 from tests.machines.made import Array, Made, made
+from tests.random_axes import random_axes
 from tests.text.controller import OK
 
 pytestmark = pytest.mark.slow
@@ -35,8 +36,8 @@ def closure_of(machine: Made) -> LoopClosure:
 
 def drawn(machine: Made) -> Array:
     """Axis values of more than one turn, and of the machine's size."""
-    sizes = np.where(machine.closure.angles, 300.0, machine.reach)
-    return np.random.default_rng(5).uniform(-1.0, 1.0, (DRAWN, len(sizes))) * sizes + machine.closure.offsets
+    rng, about = np.random.default_rng(5), machine.closure.offsets
+    return random_axes(machine.robot, DRAWN, rng, 300.0, machine.reach, about)
 
 
 @cache

@@ -13,6 +13,7 @@ from derive import compile_mechanism
 from derive.five_axes import ORDERS, five_axes
 from derive.mechanism import DescriptionError
 from tests.mechanisms import catalogue
+from tests.orthonormal import rodrigues
 
 Array = NDArray[np.float64]
 AXES = {"A": np.eye(3)[0], "B": np.eye(3)[1], "C": np.eye(3)[2]}
@@ -25,11 +26,6 @@ VARIANTS = [
     ("HeadHead_AB", False, True),
 ]  # fmt: skip
 PRESENT = (12.0, -7.0, 33.0)
-
-
-def rodrigues(axis: Array, degrees: float) -> Array:
-    cross, angle = np.cross(np.eye(3), axis), np.radians(degrees)
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
 
 
 @cache
@@ -52,14 +48,14 @@ def tool(robot: softkin.Mechanism, order: str, axes: Array) -> tuple[Array, Arra
     def stand(letter: str) -> tuple[Array, Array]:
         others = [a for a in "ABC" if a != letter]
         place = sum(p.get(f"e{'xyz'['ABC'.index(a)]}0{letter.lower()}", 0.0) * AXES[a] for a in others)
-        first, second = (rodrigues(AXES[a], p.get(f"e{a.lower()}0{letter.lower()}", 0.0)) for a in others)
+        first, second = (rodrigues(AXES[a], np.radians(p.get(f"e{a.lower()}0{letter.lower()}", 0.0))) for a in others)
         return np.asarray(place), first @ second
 
     def turn(letter: str, sense: int) -> Array:
         line = AXES[letter]
         if letter == inner and "nutation" in p:
             line = np.cos(np.radians(p["nutation"])) * AXES["C"] + np.sin(np.radians(p["nutation"])) * line
-        return rodrigues(line, sense * values[letter])
+        return rodrigues(line, np.radians(sense * values[letter]))
 
     x, y, z = AXES.values()
     direction = z

@@ -5,8 +5,6 @@ is then larger than the lengths: one of them was exactly zero, so that cosine an
 pose was answered with a rotation of another pose, and with the status OK.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from softkin import Status
@@ -23,10 +21,9 @@ pytestmark = pytest.mark.slow
 A1, A2, A3, A4, A5, A6 = JOINTS = tuple(rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
 LINK, BESIDE = length("link", "upper arm and forearm", nominal=300.0), length("beside", "wrist, tool", nominal=100.0)
 ARM = textbook(
+    (*JOINTS, LINK, BESIDE),
     "FoldedAtTheWrist",
-    JOINTS,
     Rz(A1) * Ry(A2) * Rz(A3) * Tz(LINK) * Ry(A4) * Tz(LINK) * Ty(BESIDE) * Rz(A5) * Ry(A6) * Tz(BESIDE),
-    (LINK, BESIDE),
     Task("xyz", Turning.FULL),
 )
 SIZES = {"link": 300.0, "beside": 100.0}

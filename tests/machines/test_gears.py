@@ -17,6 +17,7 @@ from tests.catalogue.refusals import refusal
 from tests.machines.made import Array, Made, made
 from tests.machines.task_machines import A1, A2, DRIVEN, L1, WITH_GEARS, Z
 from tests.mechanisms import catalogue
+from tests.random_axes import random_axes
 from tests.text.controller import OK
 
 EVERY = pytest.mark.parametrize("name", DRIVEN)
@@ -24,9 +25,8 @@ EVERY = pytest.mark.parametrize("name", DRIVEN)
 
 def anywhere(machine: Made, count: int, turns: float = 4.0) -> Array:
     """Axis values over several turns."""
-    rng = np.random.default_rng(6)
-    sizes = np.where(machine.closure.angles, 360.0 * turns, 0.9 * machine.reach)
-    return np.asarray(rng.uniform(-1.0, 1.0, (count, len(sizes))) * sizes + machine.closure.offsets)
+    rng, about = np.random.default_rng(6), machine.closure.offsets
+    return random_axes(machine.robot, count, rng, 360.0 * turns, 0.9 * machine.reach, about)
 
 
 def tolerance(machine: Made) -> Array:

@@ -16,11 +16,11 @@ from derive.ir.interpret import evaluate
 from derive.ir.symbols import ROTATION_ENTRIES
 from derive.pipeline import Built
 from tests.catalogue.refusals import refusal
-from tests.machines.both import forward_in_both, inverse_in_both
+from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.guided import GUIDED
-from tests.machines.made import Array, built_of, imported_class
-from tests.text.controller import OK, UNREACHABLE, Controller
-from tests.text.units import compiled_text
+from tests.machines.made import Array
+from tests.orthonormal import rodrigues
+from tests.text.controller import UNREACHABLE, Controller
 
 pytestmark = pytest.mark.slow
 
@@ -51,24 +51,16 @@ class Guided:
 @cache
 def guided(name: str) -> Guided:
     mechanism = validate(GUIDED[name])
-    built = built_of(mechanism)
     size = max(abs(p.nominal) for p in mechanism.parameters)
     offsets = {j.offset.name: (7.0 if j.is_angle else 0.01 * size) * k for k, j in enumerate(mechanism.joints, 1)}
-    robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
-    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
-    assert controller.initialise(robot.parameters) == OK
-    return Guided(mechanism, built, robot, controller, size)
+    return Guided(mechanism, *in_both(mechanism, offsets), size)
 
 
 def rotation(*turns: tuple[int, float]) -> Array:
     """The product of turns about axes, in radians."""
     found = np.eye(3)
     for axis, angle in turns:
-        first, second = (axis + 1) % 3, (axis + 2) % 3
-        turn = np.eye(3)
-        turn[first, first] = turn[second, second] = np.cos(angle)
-        turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
-        found = found @ turn
+        found = found @ rodrigues(np.eye(3)[axis], angle)
     return found
 
 

@@ -53,7 +53,7 @@ class Pair:
 @cache
 def pair(name: str) -> Pair:
     kinematics = tuple(build(validate(MADE[name](texts()))) for texts in (hostile, plain))
-    every = languages(wanted=("python", "st", "javascript", "c", "linuxcnc"))
+    every = languages(wanted=("python", "st", "javascript", "c", "linuxcnc", "klipper", "br"))
     built = tuple(
         Built("", "", None, {one.name: part for one in every if (part := one.part(kin)) is not None}, {}, None)
         for kin in kinematics

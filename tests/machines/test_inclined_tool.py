@@ -16,7 +16,7 @@ from tests.machines.textbook import textbook
 BESIDE, BELOW = distance("beside", "Along X", nominal=30.0), distance("below", "Along Z", nominal=-50.0)
 CHAIN = Tx(BESIDE) * Ry(pi / 6) * Tz(BELOW) * Rz(pi / 3)
 INCLINED = textbook(
-    "InclinedTool", (), CHAIN, (BESIDE, BELOW), Task("", Turning.NONE), family="orientation", offset_interface=None
+    (BESIDE, BELOW), "InclinedTool", CHAIN, Task("", Turning.NONE), family="orientation", offset_interface=None
 )
 """A tool that is inclined against the flange."""
 TOOL = Frame((30.0, 0.0, 0.0)) @ Frame.from_euler(0.0, 30.0, 60.0, (-25.0, 0.0, -50.0 * 0.75**0.5))

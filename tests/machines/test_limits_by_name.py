@@ -19,7 +19,7 @@ LOWER = length("lower_arm", "from the elbow to the tool", nominal=200.0)
 def arm() -> type[Mechanism]:
     """A planar arm whose lengths are called like limits."""
     chain, elbow = Rz(A1) * Tx(UPPER) * Rz(A2) * Tx(LOWER), branch("elbow", sin(A2), right=+1, left=-1)
-    description = textbook("NamedArm", (A1, A2), chain, (UPPER, LOWER), Task("xy"), (elbow,), family="planar")
+    description = textbook((A1, A2, UPPER, LOWER), "NamedArm", chain, Task("xy"), (elbow,), family="planar")
     mechanism = validate(description)
     return imported_class(mechanism, built_of(mechanism))
 

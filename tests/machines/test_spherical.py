@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
-from tests.machines.both import forward_in_both, inverse_in_both
-from tests.machines.made import built_of, imported_class
+from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.spherical_machines import A1, SPHERICAL
-from tests.text.controller import OK, Controller
-from tests.text.units import compiled_text
+from tests.orthonormal import rodrigues
+from tests.text.controller import Controller
 
 pytestmark = pytest.mark.slow
 
@@ -29,11 +28,8 @@ Matrix = NDArray[np.float64]
 def both(name: str) -> tuple[softkin.Mechanism, Controller, Any]:
     """The machine in both languages, with offsets, and its stated equations as a function of joints and rotation."""
     mechanism = validate(SPHERICAL[name])
-    built = built_of(mechanism)
     offsets = {j.offset.name: 0.3 if j.is_angle else 0.01 for j in mechanism.joints}
-    robot = imported_class(mechanism, built)(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
-    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
-    assert controller.initialise(robot.parameters) == OK
+    _, robot, controller = in_both(mechanism, offsets)
     known = {p.symbol: p.nominal for p in mechanism.parameters}
     stated = [sp.sympify(e).xreplace(known) for e in mechanism.equations]
     return robot, controller, sp.lambdify([[j.symbol for j in mechanism.joints], list(ROTATION)], stated)
@@ -55,10 +51,7 @@ def near_home(count: int, largest: float) -> list[Matrix]:
     found = []
     for _ in range(count):
         axis = rng.normal(size=3)
-        x, y, z = axis / np.linalg.norm(axis)
-        angle = rng.uniform(-largest, largest)
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        found.append(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross)
+        found.append(rodrigues(axis / np.linalg.norm(axis), rng.uniform(-largest, largest)))
     return found
 
 

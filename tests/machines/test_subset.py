@@ -14,12 +14,12 @@ from derive.drawing.drawing import drawing_of
 from derive.emit.picture.view import axes_of
 from derive.kinematics.build import build
 from tests.catalogue.refusals import refusal
-from tests.machines.both import forward_in_both, inverse_in_both
+from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.grid import grid
-from tests.machines.made import Array, built_of, imported_class, made
+from tests.machines.made import Array, made
 from tests.machines.subset_machines import A1, LOOPS, SUBSETS
+from tests.random_axes import random_axes
 from tests.text.controller import OK, UNREACHABLE, Controller
-from tests.text.units import compiled_text
 
 UPRIGHT = ("arm in an upright plane", "arm on a wall that leans", "arm in an upright plane that points its tool")
 ORDER = "it must be coordinates in the order x, y, z, or '' of a machine that only turns"
@@ -30,13 +30,8 @@ NO_TURN = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 def loop(name: str) -> tuple[softkin.Mechanism, Controller]:
     """A loop in both languages, with offsets."""
     mechanism = validate(LOOPS[name])
-    built = built_of(mechanism)
-    robot_class = imported_class(mechanism, built)
     offsets = {f"offset_{j.key}": 11.0 * k - 20.0 for k, j in enumerate(mechanism.joints)}
-    robot = robot_class(**{p.name: p.nominal for p in mechanism.parameters}, **offsets)
-    controller = Controller(compiled_text(f"{mechanism.name}.st", built.parts["st"]["text"]), mechanism)
-    assert controller.initialise(robot.parameters) == OK
-    return robot, controller
+    return in_both(mechanism, offsets)[1:]
 
 
 def missed(mechanism: Mechanism, robot: softkin.Mechanism, axes: Array, position: Array) -> float:
@@ -54,7 +49,7 @@ def test_a_loop_closes_in_both_languages(name: str) -> None:
     robot, controller = loop(name)
     mechanism = LOOPS[name]
     closed = 0
-    for axes in np.random.default_rng(2).uniform(-180.0, 180.0, (60, len(mechanism.joints))):
+    for axes in random_axes(robot, 60, np.random.default_rng(2), 180.0, 180.0):
         there = forward_in_both(controller, robot, axes.tolist(), 1.0)
         if there is None:
             continue
@@ -74,7 +69,7 @@ def test_the_jacobian_of_a_loop_is_that_of_its_differences(name: str) -> None:
     robot, _ = loop(name)
     count, step = len(LOOPS[name].joints), 1e-4
     compared = 0
-    for axes in np.random.default_rng(4).uniform(-60.0, 60.0, (20, count)):
+    for axes in random_axes(robot, 20, np.random.default_rng(4), 60.0, 60.0):
         try:
             given = robot.jacobian(axes)
             ends = [[robot.forward(axes + s * step * e)[0].position for s in (-1, 1)] for e in np.eye(count)]

@@ -5,8 +5,6 @@ mechanism of every path through the compiler; with --sweep, all others run. What
 half is left out: texts, Structured Text, types, derivations, and faults that are planted in the Python.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

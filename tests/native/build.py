@@ -1,7 +1,5 @@
 """The extension of the generated package, compiled into `build/native`: each source again where it has changed."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import shlex
@@ -24,16 +22,9 @@ SHARED = (
 )
 """The files that hold no machine of their own."""
 STRICT = (
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-Wconversion",
-    "-fvisibility=hidden",
-    "-ffp-contract=off",
-    "-fno-math-errno",
-    "-fno-trapping-math",
-)
+    "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-fvisibility=hidden", "-ffp-contract=off",
+    "-fno-math-errno", "-fno-trapping-math",
+)  # fmt: skip
 SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
 
 

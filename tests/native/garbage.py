@@ -1,7 +1,5 @@
 """What is no input, in the place of numbers, rows and frames: for both cores."""
 
-from __future__ import annotations
-
 from array import array
 from collections import UserList
 from collections.abc import Iterator
@@ -41,32 +39,10 @@ class Rude:
 
 HUGE = 10**400
 NUMBERS: tuple[Any, ...] = (
-    nan,
-    inf,
-    -inf,
-    1e300,
-    1.1e9,
-    -0.0,
-    True,
-    3,
-    HUGE,
-    -HUGE,
-    None,
-    "1",
-    b"1",
-    1j,
-    Other(2.0),
-    np.float32(2.5),
-    np.float64(2.5),
-    np.int64(3),
-    np.array(2.0),
-    np.array([1.0, 2.0]),
-    Decimal("1.5"),
-    Fraction(1, 3),
-    [1.0],
-    {},
+    nan, inf, -inf, 1e300, 1.1e9, -0.0, True, 3, HUGE, -HUGE, None, "1", b"1", 1j, Other(2.0), np.float32(2.5),
+    np.float64(2.5), np.int64(3), np.array(2.0), np.array([1.0, 2.0]), Decimal("1.5"), Fraction(1, 3), [1.0], {},
     object(),
-)
+)  # fmt: skip
 """In the place of a number."""
 
 
@@ -75,33 +51,12 @@ def rows(count: int) -> list[Any]:
     good = (1.0,) * count
     wrong = [(*good[:i], number, *good[i + 1 :]) for number in NUMBERS for i in {0, count - 1} if count]
     return [
-        *wrong,
-        *(list(row) for row in wrong[:6]),
-        good[:-1],
-        (*good, 1.0),
-        (),
-        None,
-        5,
-        "12",
-        b"1" * count,
-        {1.0},
-        {1.0: 2.0},
-        array("d", good),
-        array("f", good),
-        range(count),
-        UserList(good),
-        Row(good),
-        np.array(good),
-        np.array(good, np.float32),
-        np.array(good, complex),
-        np.array(good, int),
-        np.array([good]),
-        np.ma.masked_array(good, mask=[True] * count),
-        np.array(good, object),
-        np.asarray(good, ">f8"),
-        memoryview(array("d", good)),
-        Rude,
-    ]
+        *wrong, *(list(row) for row in wrong[:6]), good[:-1], (*good, 1.0), (), None, 5, "12", b"1" * count, {1.0},
+        {1.0: 2.0}, array("d", good), array("f", good), range(count), UserList(good), Row(good), np.array(good),
+        np.array(good, np.float32), np.array(good, complex), np.array(good, int), np.array([good]),
+        np.ma.masked_array(good, mask=[True] * count), np.array(good, object), np.asarray(good, ">f8"),
+        memoryview(array("d", good)), Rude,
+    ]  # fmt: skip
 
 
 def frames() -> list[Any]:

@@ -1,7 +1,5 @@
 """Machines on the native core, and the same ones whose calls are Python's."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import cache
@@ -12,6 +10,7 @@ import softkin
 from softkin import Frame, KinematicsError, Mechanism
 
 from tests.corpus.dimensions import DIMENSIONS
+from tests.random_axes import random_axes
 
 NAMES = tuple(DIMENSIONS)
 SOME = ("Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Delta_P3C_Type3", "Kin_Hexapod", "Kin_Wrist2",
@@ -73,8 +72,7 @@ def _drawn(robot: Mechanism, name: str, random: np.random.Generator) -> tuple[fl
         tilt = 5.0 if robot.FREEDOM == "three" else 0.0
         return tuple(robot.inverse(Frame.from_euler(random.uniform(-5.0, 5.0), tilt, 0.0, place)))
     size = sum(abs(v) for k, v in given.items() if not k.startswith(("offset", "lower", "upper"))) or 500.0
-    most = np.array([170.0 if axis.unit == "deg" else 0.4 * size for axis in robot.AXES])
-    return tuple(random.uniform(-most, most).tolist())
+    return tuple(random_axes(robot, 1, random, 170.0, 0.4 * size)[0].tolist())
 
 
 def outcome(call: Callable[..., Any], *given: Any) -> Any:

@@ -1,7 +1,5 @@
 """Whatever it is given, the native core answers as Python does, leaks nothing, and survives."""
 
-from __future__ import annotations
-
 import copy
 import gc
 import pickle

@@ -1,7 +1,5 @@
 """Which core runs: as the environment says, or native where there is one; a wrong choice is an error that says so."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

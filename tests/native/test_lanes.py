@@ -1,7 +1,5 @@
 """Several poses at a time: what the lanes compute alone, and that a row is answered alike wherever it stands."""
 
-from __future__ import annotations
-
 import math
 import subprocess
 from pathlib import Path
@@ -16,6 +14,7 @@ from derive.kinematics.build import build
 from derive.mechanism import Mechanism, Task, branch, length, linear, rotary
 from tests.native.build import SOURCES, STRICT, compiler
 from tests.native.machines import SOME, native
+from tests.random_axes import random_axes
 
 CODE = """
 #include <stdio.h>
@@ -104,7 +103,7 @@ def test_names_of_the_loop(names: tuple[str, ...], tmp_path: Path) -> None:
 def test_rows_do_not_depend_on_each_other(name: str) -> None:
     """One row, some rows, and the same rows among many: the same bytes."""
     robot = native(name)
-    axes = np.random.default_rng(7).uniform(-150.0, 150.0, (41, len(robot.AXES)))
+    axes = random_axes(robot, 41, np.random.default_rng(7), 150.0, 150.0)
     positions, rotations, configurations, _ = robot.forward_batch(axes)
     whole = robot.inverse_batch(positions, rotations, configurations, axes)
     every = None if robot._machine.is_searched else robot.inverse_all_batch(positions, rotations, axes)

@@ -1,7 +1,5 @@
 """Machines that are called like files of the core: each has its own files, and all of them make one extension."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

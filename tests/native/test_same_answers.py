@@ -1,7 +1,5 @@
 """Both cores give the same answers: every call, in every form of its arguments, batches too."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

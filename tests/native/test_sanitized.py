@@ -1,7 +1,5 @@
 """The object of Python under the sanitizers of the compiler: garbage in every place, and batches of any form."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Batches: the lock of Python is free meanwhile, the environment limits the threads, and results do not."""
 
-from __future__ import annotations
-
 import sys
 import threading
 import time

@@ -1,7 +1,5 @@
 """The pages of the catalogue, each made once, and poses of its machines with the values of all names on them."""
 
-from __future__ import annotations
-
 from functools import cache
 from xml.etree import ElementTree as ET
 

@@ -3,8 +3,6 @@
 It knows nothing of how pages are written: it reads the tags of presentation MathML with the precedence of a textbook.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree as ET

@@ -1,7 +1,5 @@
 """Formulas: what is printed as MathML, and read again as a person reads it, has the value of the expression."""
 
-from __future__ import annotations
-
 from xml.etree import ElementTree as ET
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every name on a page is one of the block or of the class in Python, whatever a machine calls its inputs."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from functools import cache

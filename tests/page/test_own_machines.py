@@ -1,7 +1,5 @@
 """Pages of machines in no catalogue: more axes than a block has, guides, a pitch, one of two solutions alone."""
 
-from __future__ import annotations
-
 from functools import cache
 from xml.etree import ElementTree as ET
 

@@ -1,7 +1,5 @@
 """Every page of the catalogue: whole, well-formed, by itself; its programs, executed from the page, answer the same."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,9 +1,13 @@
-"""What is said of the proof: the table in docs/LINUXCNC.md is the printed one, and documents name what there is."""
+"""What is said of the proof: its table in docs/LINUXCNC.md, and the modules that it proves."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
-from prove.linuxcnc.machines import MACHINES
+import pytest
+
+from prove.linuxcnc.machines import MACHINES, SCARA, TRUNNION
+from prove.linuxcnc.modules import Module, NotWritten, written
 from prove.linuxcnc.table import HEAD, table
 from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import ALIKE, ON_THE_WAY, Verdict
@@ -46,3 +50,25 @@ def test_continuous_integration_runs_it_before_the_tests() -> None:
     lines = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()
     assert lines[-2:] == ["make test", "make sweep"]
     assert lines.index("make prove-linuxcnc IF_POSSIBLE=1") < lines.index("make test")
+
+
+def test_what_the_compiler_refuses_is_told(tmp_path: Path) -> None:
+    """Its own words, and nothing of an earlier run is left to be taken for a module."""
+    old = tmp_path / "linuxcnc" / "none_kins.c"
+    old.parent.mkdir()
+    old.write_text("old", encoding="utf-8")
+    with pytest.raises(NotWritten, match="Kin_None"):
+        written([replace(SCARA, mechanism="Kin_None")], tmp_path, fresh=False)
+    assert not old.exists()
+
+
+def test_parameters_and_limits_are_set_by_their_pins() -> None:
+    """Every one of them, as the HAL reads it."""
+    lines = Module(Path("tabletable_ac_kins.c")).setting(TRUNNION)
+    assert lines == [
+        "setp softkin.pivot-y 40.0",
+        "setp softkin.pivot-z -60.0",
+        "setp softkin.tool-length 120.0",
+        "setp softkin.lower-a -100.0",
+        "setp softkin.upper-a 100.0",
+    ]

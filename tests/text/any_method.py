@@ -91,6 +91,8 @@ def _fitting(pair: SerialPair, sample: Sample) -> dict[str, Any]:
         "cd2": configuration,
         "cdSrc": configuration,
         "aTwist": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        "aTwistRate": [6.0, 5.0, 4.0, 3.0, 2.0, 1.0],
+        "aVelocities": [2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
         "as": settings(library, None),
         "udiAxis": 0,
     }

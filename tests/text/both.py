@@ -1,7 +1,5 @@
 """A machine as a function block and in Python, with the names that `tests.text.comparisons` reads."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Ways to break a unit: a text in a method, and the wrong text that replaces it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -62,10 +60,7 @@ REFUSED = {
     "a wrong argument": Break(_WRITTEN, "aElements := rot", "aElements := f", "not a SMC_Frame"),
     "a write to a constant input": Break(_FORWARD, "v.dX := ", "a.a0 := ", "VAR_IN_OUT CONSTANT a"),
     "a constant input that is handed on": Break(
-        _BRANCH,
-        "a.a0 := axisA1;",
-        "Softkin_MakeRotation(aElements := rot);",
-        "VAR_IN_OUT CONSTANT rot",
+        _BRANCH, "a.a0 := axisA1;", "Softkin_MakeRotation(aElements := rot);", "VAR_IN_OUT CONSTANT rot"
     ),
     "a write outside Initialize": Break(_MARGINS, "sinA2 := ", "linkLength2 := ", "Initialize"),
     "a write to an input of the block": Break(

@@ -1,8 +1,6 @@
 """A test that asks for `pairs` runs for machines of every kind; one that asks for `serial_pairs` runs for those of
 serial mechanisms alone, one that asks for `loops` for those with rods."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism

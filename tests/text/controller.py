@@ -1,11 +1,11 @@
 """A controller that calls a block: plain values in, a status and plain values out."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
+
+from softkin import KinematicsError
 
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.emit.softmotion.inputs import wanted_name
@@ -114,15 +114,15 @@ class Controller:
 
     def explain(
         self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
-    ) -> tuple[str, float, int]:
-        """Diagnose: the reason, how much is missing, and the number of a turn that is inside."""
+    ) -> tuple[str, float, int, float]:
+        """Diagnose: the reason, how much is missing, the number of a turn that is inside, and the projection."""
         reason, outputs = self.block.call_with_outputs(
             "Diagnose",
             f=values.frame(self.library, position, rows),
             aRef=values.axes(self.library, reference),
             cd=values.configuration(self.library, configuration),
         )
-        return reason, outputs["dMissing"], outputs["iTurn"]
+        return reason, outputs["dMissing"], outputs["iTurn"], outputs["dProjection"]
 
     def inverse_offset(
         self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers
@@ -206,3 +206,31 @@ def input_value(parameter: Parameter, value: float) -> bool | int | float:
     if parameter.role is Role.FLAG:
         return bool(value)
     return int(value) if parameter.role is Role.SIGN else float(value)
+
+
+TOLERANCE = 1e-12
+"""Relative to the larger of 1 and the value: both languages evaluate the same formulas."""
+
+
+def asked(call: Callable[..., Any], *arguments: Any) -> Answer:
+    """The answer of a call in Python, as a status and a value."""
+    try:
+        return OK, call(*arguments)
+    except KinematicsError as refusal:
+        return refusal.status.softmotion, None
+
+
+def is_close(found: Any, expected: Any) -> bool:
+    """Whether numbers agree to rounding, and everything else exactly."""
+    if found == expected:
+        return True
+    if isinstance(expected, float):
+        return abs(found - expected) <= TOLERANCE * max(1.0, abs(expected))
+    if isinstance(expected, tuple | list):
+        return len(found) == len(expected) and all(map(is_close, found, expected))
+    return False
+
+
+def assert_same(found: Any, expected: Any, *context: object) -> None:
+    """Fail where two answers differ, and say what was asked."""
+    assert is_close(found, expected), "\n".join(map(str, (f"{found} is not {expected}", *context)))

@@ -1,7 +1,5 @@
 """The number of operations of running Structured Text, as a cost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any

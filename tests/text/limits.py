@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.random import Generator
 
@@ -21,11 +23,12 @@ def limited_machines(mechanism: Mechanism) -> tuple[Machine, ...]:
     """The last random machine with limits on everything that can have them, and one whose axes have just one turn."""
     plain = machines_of(mechanism)[0].given
     turns = {f"{end}_{j.key}": value for j in mechanism.joints if j.is_angle for end, value in TURN.items()}
+    free = machines_of(mechanism)[-1]
     return (
         machine(mechanism, EXACTLY_A_TURN, plain | turns),
-        _limited(mechanism, "limited", WIDE, True),
-        _limited(mechanism, "limited to a turn", NARROW, True),
-        _limited(mechanism, "limits not checked", WIDE, False),
+        limited(free, "limited"),
+        limited(free, "limited to a turn", NARROW),
+        limited(free, "limits not checked", checked=False),
     )
 
 
@@ -59,8 +62,9 @@ def draw_inside(machine: Machine, count: int, rng: Generator) -> Array:
     return axes[machine.is_regular(axes) & is_inside(machine, axes)][:count]
 
 
-def _limited(mechanism: Mechanism, label: str, share: tuple[float, float], checked: bool) -> Machine:
-    free = machines_of(mechanism)[-1]
+def limited(free: Machine, label: str, share: tuple[float, float] = WIDE, checked: bool = True) -> Machine:
+    """A machine with limits on everything that can have them, between two quantiles of its axis values."""
+    mechanism = free.mechanism
     axes = free.draw(200, np.random.default_rng(3))
     limits: dict[str, float] = {}
     for joint, column in zip(mechanism.joints, axes.T, strict=True):
@@ -71,7 +75,8 @@ def _limited(mechanism: Mechanism, label: str, share: tuple[float, float], check
     quantities = free.closure.limited(free.closure.joints(axes))
     for quantity, column in zip(mechanism.limited, quantities.T, strict=True):
         limits |= _between(quantity.name, np.quantile(column, WIDE), None)
-    return machine(mechanism, label, {**free.given, **limits, "check_limits": checked})
+    given = {**free.given, **limits, "check_limits": checked}
+    return replace(free, label=label, given=given, robot=type(free.robot)(**given))
 
 
 def _between(key: str, ends: Array, joint: Joint | None) -> dict[str, float]:

@@ -1,7 +1,5 @@
 """A named turn that limits refuse while another is inside: both languages say which, and answer when it is named."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -53,8 +51,8 @@ def _check(one: Any, sample: Sample, limits: dict[str, float], joint: Joint | No
     controller = Controller(one.library, one.mechanism)
     assert controller.initialise(robot.parameters) == OK
     frame, data = robot.forward(sample.axes)
-    status, reason, missing, turn = robot.diagnose(frame, data, sample.axes)
-    assert controller.explain(*frame, data, sample.axes) == (reason, pytest.approx(missing, rel=1e-9), turn)
+    status, reason, missing, turn, _ = robot.diagnose(frame, data, sample.axes)
+    assert controller.explain(*frame, data, sample.axes) == (reason, pytest.approx(missing, rel=1e-9), turn, 0.0)
     assert reason == expected
     assert missing == pytest.approx(360.0 * abs(turns) - AROUND if joint else 360.0 - AROUND, abs=1e-4)
     if joint is None:

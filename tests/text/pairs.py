@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
 from tests.text import comparisons
 from tests.text.comparisons import Comparison
+from tests.text.limits import limited
 from tests.text.loops import answers
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
@@ -18,10 +20,12 @@ POSITION_KINEMATICS = (*MECHANISMS, *DRIVEN, *LOOPS)
 and a folder, of their own."""
 
 
+@cache
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
     """Its machines."""
     if mechanism.drives:
-        return tuple(map(serial_pair, driven_machines_of(mechanism)))
+        machines = driven_machines_of(mechanism)
+        return tuple(map(serial_pair, (*machines, limited(machines[-1], "limited"))))
     return loops_of(mechanism) if mechanism.rods else serial_pairs_of(mechanism)
 
 

@@ -5,8 +5,6 @@ counts is which operator stands between operands of which kinds, which kinds of 
 assignment there are; an expression of which all this is known gives way to the shortest of its kind.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,15 +1,12 @@
 """Every reason of Diagnose, provoked: each number is made NaN in turn, and each condition violated in turn."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
 import numpy as np
 
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import HALF_TURN, Command, Sample
 
 _SHEAR = 1e-4
@@ -32,12 +29,12 @@ def compare_reason(one: Any, command: Command, inverse: str | None = None) -> No
     if inverse is None:
         inverse = asked(one.robot.inverse, frame, command.configuration, command.reference)[0]
     found = one.controller.explain(*frame, command.configuration, command.reference)
-    status, reason, missing, turn = one.robot.diagnose(frame, command.configuration, command.reference)
+    status, reason, missing, turn, projection = one.robot.diagnose(frame, command.configuration, command.reference)
     assert status.softmotion == inverse
-    assert_same(found, (reason, missing, turn), one, command)
+    assert_same(found, (reason, missing, turn, projection), one, command)
     assert (reason == "") == (status.softmotion == OK)
     assert (turn != 0) == (": this turn" in reason)
-    assert missing >= 0.0
+    assert missing >= 0.0 and projection * missing == 0.0
 
 
 def _commands(one: Any, sample: Sample) -> Iterator[Command]:

@@ -1,9 +1,8 @@
 """The arguments of methods: poses of a machine, and commands that may be far from them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -49,6 +48,7 @@ class Command:
     reference: Reals
 
 
+@cache
 def regular(machine: Machine, count: int = SAMPLES) -> tuple[Sample, ...]:
     """Random samples away from singular poses; where there are limits, checked or not, half of them inside."""
     rng = np.random.default_rng(sum(machine.label.encode()))

@@ -1,7 +1,5 @@
 """Serial pairs: a machine of a serial mechanism as a function block, and the same machine as a Python object."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache, cached_property
 

@@ -1,7 +1,5 @@
 """Limits that a drive hands over: as arguments, and together with those of a machine."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -13,6 +11,7 @@ from softkin import KinematicsError, Status
 from derive.description.mechanism import Joint, Mechanism, Role
 from tests.harness.library import Library
 from tests.mechanisms import catalogue
+from tests.random_axes import random_axes
 from tests.text import values
 
 Range = tuple[float, float] | None
@@ -69,13 +68,8 @@ def poses(mechanism: Mechanism, count: int = 3) -> tuple[tuple[float, ...], ...]
     """Joint values of regular poses of the nominal machine, to which its inverse returns."""
     robot = robot_of(mechanism)
     rng = np.random.default_rng(17)
-    columns = []
-    for joint in mechanism.joints:
-        low, high = (-150.0, 150.0) if joint.axis_is_angle else (joint.nominal + 20.0, joint.nominal + 90.0)
-        if joint.domain is not None:
-            low, high = max(low, joint.domain[0] + 1.0), min(high, joint.domain[1] - 1.0)
-        columns.append(rng.uniform(low, high, DRAWN))
-    drawn = np.stack(columns, axis=1)
+    about = [0.0 if joint.axis_is_angle else joint.nominal + 55.0 for joint in mechanism.joints]
+    drawn = random_axes(robot, DRAWN, rng, 150.0, 35.0, about)
     chosen: list[tuple[float, ...]] = []
     for row in drawn[robot.forward_batch(drawn)[3] == Status.OK].tolist():
         if len(chosen) < count and _is_regular(robot, tuple(row)):

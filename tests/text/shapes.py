@@ -1,7 +1,5 @@
 """The shape of a text for a grammar: names and numbers do not matter, and a shape is parsed once."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Which statements of a text were executed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from itertools import compress

@@ -4,8 +4,6 @@ For every block with turns to choose from, positions, loops and orientation kine
 drives allow together is a machine in Python with the common limits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -16,8 +14,7 @@ import pytest
 import softkin
 
 from derive.description.mechanism import Joint, Mechanism
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller, asked, assert_same
 from tests.text.settings import TURNING, Range, poses, robot_of, together
 from tests.text.units import compiled
 
@@ -280,14 +277,8 @@ def test_limits_of_block_and_drive_decide_together(mechanism: Mechanism) -> None
 
 
 CHANGES: tuple[Range, ...] = (
-    None,
-    DRIVE,
-    (100.0, 440.0),
-    (-720.0, 720.0),
-    (-40.0, 20.0),
-    (-250.0, -150.0),
-    (-180.0, 180.0),
-)
+    None, DRIVE, (100.0, 440.0), (-720.0, 720.0), (-40.0, 20.0), (-250.0, -150.0), (-180.0, 180.0),
+)  # fmt: skip
 
 
 @pytest.mark.long

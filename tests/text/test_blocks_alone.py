@@ -1,7 +1,5 @@
 """Properties of a block by itself: its methods agree with one another."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 Without this, all other tests of the folder could pass for the wrong reason.
 """
 
-from __future__ import annotations
-
 import math
 import re
 

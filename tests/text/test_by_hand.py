@@ -1,7 +1,5 @@
 """A generated block costs little more than one that is written by hand: `bench/` holds such blocks of four kinds."""
 
-from __future__ import annotations
-
 import pytest
 
 from bench.blocks import FOLDER, KINDS, Kind, measured

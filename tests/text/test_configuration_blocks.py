@@ -1,7 +1,5 @@
 """The blocks that set and read configurations, and the relation between configurations."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import Any
 
@@ -9,9 +7,8 @@ import pytest
 
 from derive.description.mechanism import Mechanism
 from tests.text import values
-from tests.text.closeness import asked, assert_same
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import BAD_INPUT
+from tests.text.controller import BAD_INPUT, asked, assert_same
 from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
 
 CONFIGURABLE = [m for m in POSITION_KINEMATICS if m.branches or m.period_joints]

@@ -1,7 +1,5 @@
 """The answers of Diagnose against known properties of a machine. Other tests compare both languages."""
 
-from __future__ import annotations
-
 import pytest
 from softkin import Diagnosis, Scara2Z, Status
 
@@ -12,13 +10,9 @@ from tests.text.units import compiled
 
 SCARA = load(MECHANISMS / "kin_scara2_z.py")
 GIVEN = {
-    "arm_length_1": 300.0,
-    "arm_length_2": 200.0,
-    "lower_a1": -10.0,
-    "upper_a1": 40.0,
-    "lower_z": 0.0,
+    "arm_length_1": 300.0, "arm_length_2": 200.0, "lower_a1": -10.0, "upper_a1": 40.0, "lower_z": 0.0,
     "upper_z": 100.0,
-}
+}  # fmt: skip
 ROBOT = Scara2Z(**GIVEN)
 REFERENCE = (0.0, 0.0, 0.0)
 NAN = float("nan")
@@ -35,7 +29,7 @@ def both(position: tuple[float, ...], configuration: tuple[int, ...]) -> Diagnos
     controller = Controller(compiled(SCARA), SCARA)
     controller.initialise(ROBOT.parameters)
     found = ROBOT.diagnose((position, NO_TURN), configuration, REFERENCE)
-    reason, missing, turn = controller.explain(position, NO_TURN, configuration, REFERENCE)
+    reason, missing, turn, _ = controller.explain(position, NO_TURN, configuration, REFERENCE)
     assert (reason, turn) == (found.reason, found.turn)
     assert missing == pytest.approx(found.missing, rel=1e-12, abs=1e-12)
     return found
@@ -59,7 +53,7 @@ def test_the_axis_beyond_its_limit_and_how_far(axes: tuple[float, ...], reason: 
 
 def test_nothing_to_say() -> None:
     """Diagnose answers an empty text for a pose that is solved."""
-    assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0)
+    assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0, 0.0)
 
 
 @pytest.mark.parametrize(("distance", "missing"), [(501.0, 1.0), (510.0, 10.0), (60.0, 40.0), (99.0, 1.0)])
@@ -72,7 +66,7 @@ def test_out_of_reach_by_a_length(distance: float, missing: float) -> None:
 
 def test_what_is_no_number() -> None:
     """Diagnose says which input is no number."""
-    assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0)
+    assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0, 0.0)
 
 
 def test_a_byte_without_a_meaning() -> None:
@@ -82,6 +76,7 @@ def test_a_byte_without_a_meaning() -> None:
         "byte 0 of the configuration means nothing",
         0.0,
         0,
+        0.0,
     )
 
 

@@ -1,7 +1,5 @@
 """Every method of every emitted block is executed, and answers what the Python package answers."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism
@@ -16,14 +14,9 @@ ITERATED = ("Hexapod", "Hexaglide", "3RRR", "ThreeParallel")
 DEAR = tuple(f"{name}.{method}" for name in ITERATED for method in ("CartesianToAxes", "Diagnose"))
 """What takes long: inverse kinematics of machines that iterate."""
 EVERYWHERE = (
-    "AxesToCartesian",
-    "CartesianToAxes",
-    "AxesToOrientation",
-    "IsSingularity",
-    "Jacobian",
-    "AxesToConfiguration_Offset",
-    "CartesianToAxes_Offset",
-)
+    "AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian",
+    "AxesToConfiguration_Offset", "CartesianToAxes_Offset",
+)  # fmt: skip
 """Methods of loops that are asked for axis values at which no loop closes as well."""
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterator
 from functools import cache, partial
 from itertools import product
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 import softkin
 
-from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.description.mechanism import Mechanism
 from derive.emit.st.names import capitalized
 from tests.catalogue.machines import bare_machine
 from tests.harness.library import Library
@@ -30,7 +29,6 @@ from tests.text import (
     test_singular_poses,
 )
 from tests.text.comparisons import COMPARISONS, POSELESS
-from tests.text.controller import OK, Controller
 from tests.text.reasons import provoke
 from tests.text.samples import Sample, coinciding
 from tests.text.selftest import test_self_test
@@ -221,8 +219,7 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
     """The lines that no input reaches: an axis whose closure allows only an interval always has limits, a divisor that
-    has been refused is not replaced, an inverse without axes has nothing to refuse, and so no reason, and the range of
-    an angle of the machine excludes that a length vanishes.
+    has been refused is not replaced, and an inverse without axes has nothing to refuse, and so no reason.
     """
     keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
     dead = {
@@ -233,34 +230,7 @@ def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
         start = next(number for number, line in enumerate(lines, 1) if line.startswith("METHOD PROTECTED ReasonOf "))
         end = next(n for n, line in enumerate(lines, 1) if n > start and line.startswith("END_METHOD"))
         found |= set(range(start, end))
-    return found | replaced_after_a_refusal(lines) | excluded_by_ranges(mechanism, lines)
-
-
-def excluded_by_ranges(mechanism: Mechanism, lines: list[str]) -> set[int]:
-    """The lines of a refusal where a constant of the block is too small, which it is for no angle in its range."""
-    angles = [p for p in mechanism.parameters if p.role is Role.ANGLE and p.low > 0.0]
-    found: set[int] = set()
-    for number, line in enumerate(lines):
-        condition = re.fullmatch(r"( *)IF NOT \((\w+) > (\S+)\) THEN", line)
-        if angles and condition and is_larger(mechanism, angles[0], condition[2], float(condition[3])):
-            end = next(k for k in range(number, len(lines)) if lines[k] == f"{condition[1]}END_IF")
-            found |= set(range(number + 2, end + 1))
-    return found
-
-
-def is_larger(mechanism: Mechanism, angle: Parameter, name: str, bound: float) -> bool:
-    """Whether a constant of the block depends on an angle alone, and is larger than a bound in all of its range."""
-    controller = Controller(compiled(mechanism), mechanism)
-    nominal = {p.name: p.nominal for p in mechanism.parameters}
-    grown = {p.name: 2.0 * p.nominal for p in mechanism.parameters if p is not angle}
-    for value in np.linspace(angle.low, angle.high, 357).tolist():
-        constants = []
-        for given in (nominal, nominal | grown):
-            assert controller.initialise(given | {angle.name: value}) == OK
-            constants.append(controller.state().get(name))
-        if constants[0] is None or constants[0] != constants[1] or not constants[0] > bound:
-            return False
-    return True
+    return found | replaced_after_a_refusal(lines)
 
 
 def replaced_after_a_refusal(lines: list[str]) -> set[int]:

@@ -1,32 +1,72 @@
 """The flat profile: a block has all its methods, extends nothing, and answers what the block with a base answers."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import pytest
 
-from derive.emit.plcopen.objects import objects_of
+from derive.description.mechanism import Mechanism
+from derive.emit.plcopen.objects import Object, as_text, objects_of
 from derive.emit.softmotion.library import flattened
 from tests.codesys.plcopen_reader import NAMESPACE
 from tests.codesys.test_plcopen import errors
 from tests.harness import ast
 from tests.harness.blark_grammar import parse_with_blark
 from tests.harness.contract import header
-from tests.harness.library import compile_st
+from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
 from tests.harness.pieces import split
 from tests.harness.unused import unused
 from tests.mechanisms import catalogue
 from tests.text.controller import OK, Controller
-from tests.text.flat import BASE, base, flat_library, flat_of, flat_text, objects_in
 from tests.text.pairs import POSITION_KINEMATICS, comparisons_of, pairs_of
 from tests.text.test_portable import lint
 from tests.text.test_profiles import BLOCK, rendered
-from tests.text.units import compiled, text_of
+from tests.text.units import compiled, file_of, shared_texts, text_of
+
+BASE = "Softkin_Kinematics"
+
+
+def objects_in(text: str) -> tuple[Object, ...]:
+    """The objects of a file, without its preamble and its rulers."""
+    lines = text.split("\n")
+    start = next(at for at, line in enumerate(lines) if line.startswith("// ===="))
+    bare = (re.sub(r"  // =+$", "", line) for line in lines[start:] if not line.startswith("// ===="))
+    return objects_of("\n".join(bare))
+
+
+@cache
+def base() -> Object:
+    """The base block."""
+    (found,) = objects_in(shared_texts()[f"{BASE}.st"])
+    return found
+
+
+@cache
+def flat_text(mechanism: Mechanism) -> str:
+    """The unit as the flat profile writes it, without its preamble."""
+    return flat_of(text_of(mechanism))
+
+
+def flat_of(text: str) -> str:
+    """The text of a unit, flat."""
+    return as_text(flattened(objects_in(text), base()))
+
+
+def flat_texts(mechanism: Mechanism) -> Mapping[str, str]:
+    """The unit and the objects that all units share."""
+    shared = {name: text for name, text in shared_texts().items() if name != f"{BASE}.st"}
+    return {**shared, file_of(mechanism): flat_text(mechanism)}
+
+
+@cache
+def flat_library(mechanism: Mechanism) -> Library:
+    """The unit, ready to run."""
+    return compile_st(flat_texts(mechanism))
+
 
 pytestmark = pytest.mark.slow
 

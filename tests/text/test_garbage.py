@@ -1,7 +1,6 @@
-"""Invalid values in every input of every method: refused with outputs unchanged, or not read; nothing stops a
-controller."""
-
-from __future__ import annotations
+"""Invalid values in every input of every method, dimensions of all sizes: refused with outputs unchanged, or not read;
+nothing stops a controller.
+"""
 
 import math
 from collections.abc import Iterator
@@ -11,13 +10,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+import softkin
+from softkin import KinematicsError
 
+from tests.catalogue.extreme import extreme_dimensions
 from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
-from tests.text.closeness import asked, assert_same
 from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, Controller, asked, assert_same
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.samples import NO_TURN, Rows
@@ -34,6 +35,8 @@ NO_ROTATIONS: tuple[Rows, ...] = (
 )
 """Nothing, mirrored, stretched by a little, sheared by a little, swapped, huge."""
 
+MOTIONS = {"AxisVelocities": "aVelocities", "AxisAccelerations": "aAccelerations"}
+"""The methods that write zeros where they refuse, with the argument to which they do."""
 FORWARD_METHODS = ("AxesToCartesian", "AxesToOrientation", "Jacobian", "IsSingularity", "AxesToConfiguration_Offset")
 
 
@@ -49,8 +52,8 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
     """A refusal that wrote nothing, or the answer to clean inputs; a method without a status writes neutral values."""
     before = call.state()
     result, after = call.run()
-    if call.is_refused(result) and call.method.startswith("AxisVelocities"):
-        assert set(after["aVelocities"].values()) == {0.0}, f"{what}"
+    if call.is_refused(result) and (found := MOTIONS.get(call.method.removesuffix("From"))):
+        assert set(after[found].values()) == {0.0}, f"{what}"
     elif call.is_refused(result):
         assert after == before, f"{call.method} refused, and wrote: {what}"
     elif call.method == "Diagnose":
@@ -196,3 +199,26 @@ def test_the_largest_numbers(pairs: tuple[Pair, ...]) -> None:
                 status, answer = asked(one.robot.inverse, (position, NO_TURN), data, reference)
                 found = one.controller.inverse(position, NO_TURN, data, reference)
                 assert_same(found, (status, answer and answer + (0.0,) * (6 - count)), one, position, data, reference)
+
+
+MACHINES = 8
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def test_every_call_ends(pairs: tuple[Pair, ...]) -> None:
+    """Initialize refuses what Python refuses, and every call after it answers a status."""
+    mechanism = pairs[0].mechanism
+    made = softkin.catalogue()[mechanism.name]
+    names = {p.name for p in made.PARAMETERS}
+    for given in extreme_dimensions(mechanism, MACHINES):
+        controller = Controller(pairs[0].library, mechanism)
+        try:
+            made(**{name: value for name, value in given.items() if name in names})
+            expected = OK
+        except KinematicsError:
+            expected = NOT_INITIALIZED
+        assert controller.initialise(given) == expected
+        axes = [10.0 * (k + 1) for k in range(len(made.AXES))]
+        status, pose = controller.forward(axes)
+        position, rows = pose[:2] if status == OK else ((30.0, -20.0, 10.0), IDENTITY)
+        controller.inverse(position, rows, made.DEFAULT_CONFIGURATION, axes)

@@ -1,7 +1,5 @@
 """Methods that a block inherits beside those of its interfaces: an answer or "impossible", never "not initialised"."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

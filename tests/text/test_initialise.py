@@ -1,7 +1,5 @@
 """Initialize: its refusals; no other method reads the inputs."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator
@@ -15,8 +13,7 @@ from derive.kinematics.parameters import machine_parameters
 from tests.catalogue.machines import LENGTHS
 from tests.harness.library import Library, StError
 from tests.text.any_method import call_of, methods_of
-from tests.text.closeness import asked
-from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked
 from tests.text.pairs import Pair
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 from tests.text.units import compiled, compiled_text, file_of, text_of

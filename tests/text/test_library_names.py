@@ -1,7 +1,5 @@
 """The list of names: the blocks use its constants alone, so a line that is changed in it changes every block."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Every limit refuses alone, on either side, and with the tolerance that the design gives it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.text.controller import OK, UNREACHABLE, Controller

@@ -1,15 +1,17 @@
-"""The functions that touch the opaque matrix of the controller's library."""
+"""The functions that touch the opaque matrix of the controller's library, and the order in which it stores entries."""
 
-from __future__ import annotations
-
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 import pytest
 
 from tests.harness.library import Library, compile_st
+from tests.text.comparisons import POSELESS
+from tests.text.controller import OK, Controller
+from tests.text.pairs import Pair, comparisons_of
 from tests.text.samples import NO_TURN
-from tests.text.units import shared_texts
+from tests.text.units import compiled, shared_texts
 
 NUMBERS = [float(n) for n in range(1, 10)]
 ROWS = ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0))
@@ -109,3 +111,31 @@ def test_the_body_for_nine_fields_is_right() -> None:
     assert [getattr(written, f"field{row}{column}") for row, column in places] == NUMBERS
     found = [0.0] * 9
     assert made.function("Softkin_ReadMatrix")(m=written, aElements=found, eOrder="Rows") and found == NUMBERS
+
+
+FEW = 4
+MACHINES = ("nominal", "random 2", "other", "limited")
+
+
+def by_columns(pair: Pair) -> Controller:
+    """The block with a library that stores its matrices the other way, which Initialize finds."""
+    controller = Controller(compiled(pair.mechanism, "columns"), pair.mechanism)
+    assert controller.initialise(pair.robot.parameters) == OK
+    assert controller.block.matrixOrder.lower() == "columns"
+    return controller
+
+
+@pytest.mark.broad
+@pytest.mark.long("Hexapod", "Scara4")
+def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> None:
+    """Every method gives the same answers for matrices that are stored by columns."""
+    compared = [pair for pair in pairs if pair.machine.label in MACHINES]
+    assert len(compared) == 3
+    for pair in compared:
+        controller = by_columns(pair)
+        other = replace(pair, controller=controller)
+        for sample in pair.regular[:FEW]:
+            assert controller.forward(sample.axes) == pair.controller.forward(sample.axes)
+            for method, compare in comparisons_of(pair.mechanism).items():
+                if method not in POSELESS and method.lower() in controller.methods:
+                    compare(other, sample)

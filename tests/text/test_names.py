@@ -1,7 +1,5 @@
 """Names with another meaning are refused by the generator, with one sentence that says what to do."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -12,18 +12,13 @@ from tests.text.any_method import Call, call_of, methods_of
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
 from tests.text.pairs import Pair
 from tests.text.serial_pairs import SerialPair
+from tests.text.test_garbage import MOTIONS
 
 State = dict[str, dict[Any, Any]]
 INDEPENDENT = {
-    "GetKinematicsName",
-    "GetConfigurationDataSize",
-    "GetDefaultConfigurationData",
-    "CPConnectible",
-    "ActivateAutomaticRotaryPeriods",
-    "IsConfigSingular",
-    "GetPeriods",
-    "AxisSettings",
-}
+    "GetKinematicsName", "GetConfigurationDataSize", "GetDefaultConfigurationData", "CPConnectible",
+    "ActivateAutomaticRotaryPeriods", "IsConfigSingular", "GetPeriods", "AxisSettings",
+}  # fmt: skip
 """Methods that need no parameter, and work as ever: AxisSettings keeps what it is given for Initialize."""
 
 
@@ -78,8 +73,8 @@ def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], C
         result, after = call.run()
         if method in INDEPENDENT:
             assert (result, after) == working(one, call, method)
-        elif method.startswith("AxisVelocities"):
-            assert result == NOT_INITIALIZED and set(after["aVelocities"].values()) == {0.0}
+        elif found := MOTIONS.get(method.removesuffix("From")):
+            assert result == NOT_INITIALIZED and set(after[found].values()) == {0.0}
         elif call.has_status:
             assert (result, after) == (NOT_INITIALIZED, before), method
         else:

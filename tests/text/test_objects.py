@@ -1,7 +1,5 @@
 """The reading of an emitted text as objects, and of a declaration as what it declares."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.emit.plcopen.declaration import declaration_of

@@ -1,14 +1,11 @@
 """Small steps, each with the last answer as the reference: no jump, until a limit refuses."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from tests.catalogue.machines import Array, Machine
 from tests.catalogue.references import held_at
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK, UNREACHABLE
+from tests.text.controller import OK, UNREACHABLE, asked, assert_same
 from tests.text.limits import draw_inside, has_limits, is_inside
 from tests.text.serial_pairs import SerialPair
 

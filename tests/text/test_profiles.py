@@ -1,8 +1,6 @@
 """Profiles of the SoftMotion contract: which interfaces an older library gets, and one line that changes one
 spelling."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from functools import lru_cache
@@ -190,7 +188,7 @@ def test_an_unknown_profile_is_refused_at_once(
     arguments = [command, "--output", str(tmp_path / "out"), "--profile", "4.99"]
     assert main(arguments) == 1
     printed = capsys.readouterr()
-    assert printed.err == "error: no profile is called '4.99'; there are current, 4.11, before_4_11, flat\n"
+    assert printed.err == "error: no profile is called '4.99'; there are current, 4.11, before_4_11, flat, pacdrive\n"
     assert printed.out == "", "before anything is derived"
 
 

@@ -4,8 +4,6 @@ It is slow. So what is the same to a grammar is parsed once, phrase by phrase, a
 as it is written. That nothing wrong is left out with what is known, faults show that are planted in what is.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """The functions that all units share, each alone, against the reference semantics of the programs."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

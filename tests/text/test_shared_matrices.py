@@ -1,7 +1,5 @@
 """Linear equations and rotations among the functions that all blocks share, held against NumPy."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

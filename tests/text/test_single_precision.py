@@ -1,13 +1,10 @@
 """Frames from REAL, and frames that are a little more off than that, in every method of a block that takes a matrix."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Turning
 from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import BAD_INPUT, OK
+from tests.text.controller import BAD_INPUT, OK, asked, assert_same
 from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Rows, Sample, tilted

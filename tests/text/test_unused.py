@@ -1,7 +1,5 @@
 """Nothing is declared that is not used: no variable that nothing reads, no output that nothing assigns."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

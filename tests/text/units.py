@@ -1,7 +1,5 @@
 """The emitted units: their texts, and each compiled together with the objects that all share."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """Values of the controller's types: made from numbers, read back, and filled with arbitrary values."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, lru_cache
 from math import nan

@@ -1,7 +1,5 @@
 """What a program binds, and whether two programs answer the same."""
 
-from __future__ import annotations
-
 import numpy as np
 import sympy as sp
 

@@ -1,7 +1,5 @@
 """The processes that derive are no copies of the one that asks them."""
 
-from __future__ import annotations
-
 from threading import Lock
 
 from derive.pipeline import workers

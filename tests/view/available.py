@@ -1,7 +1,5 @@
 """What npm brings for the tests of the viewer: a fault in CI where it can bring nothing, else nothing is shown."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from typing import TypeVar

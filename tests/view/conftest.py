@@ -1,7 +1,5 @@
 """One run of the viewer in a browser, for all tests of this folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """One run of `drive.mjs` in one browser, for all tests; npm brings the driver, and a browser where there is none."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path
@@ -14,7 +12,7 @@ PACKAGES = ROOT / ".view-tests"
 """Where npm puts the driver and the browser, once."""
 BROWSER = ROOT / "build" / "view" / "browser.txt"
 """Which browser ran, in one line, or that none could be had; the summary of a test run prints it."""
-SCRIPTS = ("browser.mjs", "drive.mjs", "follow.mjs", "shown.mjs")
+SCRIPTS = ("browser.mjs", "drive.mjs", "follow.mjs", "frame.mjs", "shown.mjs")
 
 
 def prepared() -> Path:

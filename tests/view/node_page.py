@@ -1,7 +1,5 @@
 """The parts of the page that need no browser, beside the modules of a machine: `model.mjs` asks them."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

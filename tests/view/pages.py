@@ -1,7 +1,7 @@
 """The pages that the browser opens: the whole catalogue, and a machine of a user with a mesh of its own."""
 
-from __future__ import annotations
-
+import json
+import struct
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -15,7 +15,30 @@ from derive.pipeline import work_of
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of, part_of
 from tests.mechanisms import catalogue
-from tests.view.glb import triangle
+
+_CORNERS = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
+
+
+def triangle() -> bytes:
+    """A triangle with legs of 0.1, whose node is called "own"."""
+    points = b"".join(struct.pack("<3f", *corner) for corner in _CORNERS)
+    data = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "name": "own"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"byteLength": len(points)}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(points)}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0.1, 0.1, 0]}
+        ],
+    }
+    text = json.dumps(data).encode()
+    text += b" " * (-len(text) % 4)
+    length = 12 + 8 + len(text) + 8 + len(points)
+    head = struct.pack("<4sII", b"glTF", 2, length)
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(points), b"BIN\0") + points
 
 
 def kept_modules() -> Mapping[str, bytes] | None:

@@ -1,7 +1,5 @@
 """The picture that opens the README, of the last run of the tests: `python -m tests.view.picture`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from PIL import Image

@@ -1,7 +1,5 @@
 """A state of the viewer, held against the Python package."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

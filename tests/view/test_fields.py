@@ -1,7 +1,5 @@
 """Values that are typed into fields: poses, dimensions and limits, and how they are refused."""
 
-from __future__ import annotations
-
 from math import isclose
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page of `softkin live` in a real browser: a controller moves its machine, over OPC UA, and is lost and found."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import os

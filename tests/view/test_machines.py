@@ -1,7 +1,5 @@
 """Every machine of the catalogue is drawn, and the part of it that refuses is marked."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What moves the machine: the handles of the tool, a ghost that is clicked, and a controller."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

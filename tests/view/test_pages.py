@@ -1,14 +1,20 @@
-"""The pages themselves: their size, their complaints, their links and their speed."""
-
-from __future__ import annotations
+"""The pages themselves: their size, their complaints, their links, their speed, and hostile texts in them."""
 
 import re
+from base64 import b64encode
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from derive.command.view import PACKAGES
+from derive.view.page import Content, page
+from tests.javascript.modules import files_of
+from tests.machines.hostile import MARKS
+from tests.machines.test_hostile_text import Elements, pair
 from tests.mechanisms import named
+from tests.view.available import available
 from tests.view.states import ARM, Seen
 
 pytestmark = pytest.mark.slow
@@ -53,3 +59,28 @@ def test_it_is_fast(seen: Seen) -> None:
     assert seen["times"][ARM]["ghosts"] == 7
     for marks in seen["pictures"].values():  # of several pages, on a machine that does other things as well
         assert 0 < min(one["program"] for one in marks) < min(one["first picture"] for one in marks) < 1000
+
+
+def shown(index: int) -> str:
+    """The page of the arm with hostile texts (0), or with plain ones (1)."""
+    kinematics, built = pair("chain").kinematics[index], pair("chain").built[index]
+    files = {path: text.encode() for path, text in files_of(built.parts["javascript"]).items() if path.endswith(".js")}
+    names = {kinematics.mechanism.name: " ".join(MARKS) if index == 0 else "x"}
+    content = Content(names[kinematics.mechanism.name], files, "softkin", names, reports=names)
+    return available(lambda: page(content, PACKAGES))
+
+
+def test_the_elements_are_those_of_a_plain_machine() -> None:
+    """A title, a name of a class, an address of a report, and every text of the machine add none."""
+    assert Elements(shown(0)).found == Elements(shown(1)).found
+
+
+def test_the_policy_allows_this_program_alone() -> None:
+    """By its digest, as that of the style: a page with another program, or with code in an attribute, runs nothing."""
+    text = shown(0)
+    policy = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', text)
+    program = re.search(r'<script id="program">(.*?)</script>', text, re.DOTALL)
+    assert policy and program and "unsafe" not in policy[1] and "default-src 'none'" in policy[1]
+    digest = b64encode(sha256(program[1].encode()).digest()).decode()
+    assert re.findall(r"script-src ([^;]*);", policy[1]) == [f"'sha256-{digest}'"]
+    assert text.index(policy[0]) < text.index("<script")

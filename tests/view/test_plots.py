@@ -1,7 +1,5 @@
 """What is plotted: the way along a line, and the solutions and margins in a slice."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

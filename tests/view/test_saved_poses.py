@@ -1,7 +1,5 @@
 """A pose as an address that opens it again, and as text that is copied."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

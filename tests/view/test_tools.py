@@ -1,7 +1,5 @@
 """What npm installs, once, whoever else installs it; and what a missing browser is: a fault in CI, else one line."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 

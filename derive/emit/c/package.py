@@ -32,7 +32,7 @@ from derive.kinematics.scan.search import ONWARD
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"
-MOST_AXES, MOST_BRANCHES, MOST_GIVEN = 24, 12, 96
+MOST_AXES, MOST_BRANCHES, MOST_GIVEN, MOST_ROWS, MOST_MARGINS = 24, 12, 96, 6, 64
 bound = f"no C: its calls hold {MOST_AXES} axes and {MOST_BRANCHES} branches"
 _WRITTEN = ("softkin_constants.h", "softkin_rotation.h")
 """The files beside the runtime that hold constants and a program."""
@@ -84,6 +84,7 @@ def module_name(mechanism: str) -> str:
 def _fits(kin: Kinematics) -> bool:
     given = () if kin.search_given is None else kin.search_given.outputs
     sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), MOST_GIVEN)]
+    sizes += [(len(kin.margins), MOST_MARGINS)]
     return all(size <= most for size, most in sizes)
 
 
@@ -101,6 +102,8 @@ def _templates() -> Environment:
         "most_axes": MOST_AXES,
         "most_branches": MOST_BRANCHES,
         "most_given": MOST_GIVEN,
+        "most_rows": MOST_ROWS,
+        "most_margins": MOST_MARGINS,
         "most_together": MOST_SLOTS,
     }
     return templates

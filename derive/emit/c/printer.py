@@ -32,9 +32,9 @@ WORDS = frozenset(
 _RESERVED = re.compile(r"_[A-Z_]|softkin_|SOFTKIN_|(M|FP|HUGE|INT\d*|UINT\d*|SIZE|MATH)_[A-Z0-9_]+$")
 """The beginnings of names that belong to the compiler, its library or the shared header."""
 _TAKEN = frozenset(
-    "arguments axes context cos fabs finish found frame given joints k lane machine made margins missed misses near "
-    "otherwise p parameters pass place reference results root rotation rows search signs sin sizes sqrt start status "
-    "statuses system take turn turns values wanted why".split()
+    "accelerations arguments axes context cos fabs finish found frame given joints k lane machine made margins missed "
+    "misses near otherwise p parameters pass place reference results root rotation rows search signs sin sizes speeds "
+    "sqrt start status statuses system take turn turns values wanted why".split()
 )
 """Names that a printed function needs for its own variables and for the functions that it calls."""
 _TEXT = 80

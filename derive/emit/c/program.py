@@ -163,7 +163,7 @@ class Refusals(refusals.Refusals):
 
 
 SEARCHED = "searched"
-"""The constant that says whether the machine needs a root scan, where this depends on a parameter."""
+"""The constant that says whether the machine needs a root search, where this depends on a parameter."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ _WORDS = frozenset(
 )
 """Words of JavaScript, which cannot be names."""
 TAKEN = frozenset({"axes", "found", "given", "k", "p", "pass", "point", "offset", "position", "reference", "refuse",
-                   "rotation", "signs", "start", "turn", "turns", "window"})  # fmt: skip
+                   "rotation", "signs", "speeds", "start", "turn", "turns", "window"})  # fmt: skip
 """Names that a printed function needs for its own variables."""
 
 

@@ -6,7 +6,7 @@ program of one branch: all branches at once are a call in which each branch has 
 On plain numbers the branches are unrolled (`straight_line`).
 
 arrays: a program as a method on arrays: all rows at once, a refusal is a mask
-calls: calls of programs that several programs share, and of the root scan
+calls: calls of programs that several programs share, and of the root search
 entries: the description of a machine in its class: axes, parameters, configuration bytes
 layout: the layout, by `ruff format`
 mechanism_modules: the modules of one mechanism

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from derive.drawing.parts import lines_of
 from derive.emit import native
 from derive.emit.every_branch import can_be_unrolled, has_doubts, is_unrolled
 from derive.emit.interface import arguments_of, search_of
 from derive.emit.python import entries, setup
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in, values_of_a_row
 from derive.emit.python.calls import every_root
-from derive.emit.python.methods import array_methods, methods, rows_of_twist
+from derive.emit.python.methods import array_methods, drawn_loop, methods, rows_of_twist
 from derive.emit.python.printer import primitives_in
 from derive.emit.python.program import Method, constants_of, scalar_body
 from derive.emit.python.refusal import explained
@@ -93,6 +94,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unr
         "margins": tuple(m.name for m in kin.margins),
         "every_root": every_root(search_of(kin), arguments_of(search_of(kin), kin)) if kin.search_given else [],
         "chain": chain,
+        "lines": lines_of(loop.shape) if (loop := drawn_loop(kin)) else (),
         "methods": [
             {"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)
         ],

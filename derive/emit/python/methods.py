@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from derive.description.mechanism import DescriptionError
+from derive.drawing.parts import Parts, links_of, parts_of
 from derive.emit import interface as of
 from derive.emit.interface import POSITION, ROTATION, Arrays, Entry, Shape
 from derive.emit.python.program import Argument, Method
 from derive.ir.program import Program
+from derive.kept import kept_by_identity
+from derive.kinematics.bias import bias_names
 from derive.kinematics.differential import TWIST_ROWS
 from derive.kinematics.kinematics import Kinematics
 
@@ -27,11 +31,14 @@ _KINDS = {
 _EXPLAINED = ("branch", "limits", "offset_branch")
 """The programs that refuse with a reason."""
 _ORDER = """
-    search_given from_joints forward orientation branch limits singularity jacobian twist quantities image compatible
-    end_point_shift total_image projection offset_branch offset_margins
+    search_given from_joints forward orientation branch limits singularity jacobian twist bias twist_bias quantities
+    image compatible end_point_shift total_image projection offset_branch offset_margins points
 """.split()
 """The order of their use."""
-_ON_ARRAYS = ("forward", "branch", "limits", "singularity", "jacobian", "twist", "projection", "end_point_shift")
+_ON_ARRAYS = (
+    "forward", "branch", "limits", "singularity", "jacobian", "twist", "bias", "twist_bias", "projection",
+    "end_point_shift",
+)  # fmt: skip
 """The programs that there are on arrays, too."""
 
 
@@ -51,7 +58,7 @@ def named(kin: Kinematics) -> dict[str, Method]:
     """The methods by their names, without those of shared programs."""
     found = {key: _method(entry) for key, entry in of.entries(kin).items()}
     if rows_of_twist(kin):  # the Jacobian consists of rows of the twist
-        del found["jacobian"]
+        del found["jacobian"], found["bias"]
     return found | {method.name: method for method in _further(kin)}
 
 
@@ -69,9 +76,13 @@ def _further(kin: Kinematics) -> Iterator[Method]:
     projection = kin.projection if kin.chooses_twist else None
     twist, total = of.matrix_of(kin, len(TWIST_ROWS)), (*IMAGE, "apart")
     on_flange, point = (ROTATION_ARGUMENT, *_ON_FLANGE), (_POINT, _OFFSET, *choice)
+    loop = drawn_loop(kin)
+    drawn, points = (loop.program, tuple(name for row in loop.names for name in row)) if loop else (None, ())
     rows: tuple[tuple[str, str, Program | None, tuple[Argument, ...], str, Shape], ...] = (
         ("orientation", "The rotation of the frame.", kin.orientation, axes, "Rotation", ROTATION),
         ("twist", "The twist of the frame by rows, per radian.", kin.twist, axes, "Matrix", twist),
+        ("twist_bias", "The acceleration of the twist where the axes keep their speeds, per radian.", kin.twist_bias,
+         (*axes, *_arguments(of.speeds_of(kin))), "Reals", bias_names(TWIST_ROWS)),
         ("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
         ("compatible", "Whether a flange that turns can carry this mechanism.", kin.compatible, _ON_FLANGE[:1], "", ()),
         ("end_point_shift", "The vector from a flange that turns to the end point.", kin.end_point_shift, on_flange,
@@ -84,10 +95,22 @@ def _further(kin: Kinematics) -> Iterator[Method]:
          axis_values),
         ("offset_margins", "The signed margin of every branch for a point off the flange.", kin.offset_configuration,
          (*axes, _OFFSET), "Reals", margins),
+        ("points", "What is drawn: see `LINES`.", drawn, (*axes, *_arguments(of.POSE)), "Reals", points),
     )  # fmt: skip
     for name, summary, program, arguments, kind, result in rows:
         if program is not None:
             yield Method(name, summary, program, arguments, kind, result, is_explained=name in _EXPLAINED)
+
+
+@kept_by_identity(2)
+def drawn_loop(kin: Kinematics) -> Parts | None:
+    """What is drawn of a machine with loops; None if there is no drawing, and for a chain without, whose links are."""
+    if kin.mechanism.drives:
+        return links_of(kin)
+    try:
+        return parts_of(kin) if kin.mechanism.chain is None else None
+    except DescriptionError:  # a drawing is no part of the proof
+        return None
 
 
 def _shared(kin: Kinematics) -> list[Method]:

@@ -15,7 +15,7 @@ from derive.optimize.inline import Grouped
 
 _PRIMITIVES = frozenset(KEYS[one] for one in FUNCTIONS)
 TAKEN = _PRIMITIVES | {
-    "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
+    "axes", "position", "rotation", "point", "offset", "signs", "speeds", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
     "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "no_offsets", "opposite", "holds",
     "reasonable", "p", "machine", "joints", "every", "refused", "base_axis", "flange_axis", "start_position",

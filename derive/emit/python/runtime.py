@@ -20,6 +20,7 @@ from derive.emit.python.printer import ScalarPrinter, literal, primitives_in
 from derive.emit.python.program import Method, scalar_body
 from derive.emit.python.refusal import explained
 from derive.equations.rotation_repair import rotation_program, surely_exact
+from derive.ir.constants import SAME_ROTATION
 from derive.ir.passes import without_reasons
 from derive.ir.reason import Why
 from derive.report.reasons import NO_MEANING, OTHER_TURN, reasons_of_rotation
@@ -52,7 +53,7 @@ def templates() -> Environment:
 def _constants() -> dict[str, str]:
     """The literals of the constants that modules of the runtime import, by their names."""
     texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
-    values = {**CONSTANTS, **texts}
+    values = {**CONSTANTS, **texts, "SAME_ROTATION": float(SAME_ROTATION)}
     return {name: _literal(values[name]) for name in sorted(values)}
 
 

@@ -12,7 +12,7 @@ from derive.emit.st.contract import Contract, Signature
 from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.rotation import about_z, followed
 
-_OF_AXES = ("Jacobian", "Margins", "AxisVelocities")
+_OF_AXES = ("Jacobian", "Margins", "AxisVelocities", "AxisAccelerations")
 _OWN = ("InitializeReason", *_OF_AXES, *(f"{name}From" for name in _OF_AXES), "Diagnose")
 _OF_INTERFACES = (
     "Initialize",
@@ -67,7 +67,10 @@ class Method:
 
 def inherited_texts(contract: Contract, templates: Environment) -> frozenset[str]:
     """The statements of the methods that a geometry need not override, if those of the base block are right for it."""
-    plain = (_method(contract.overridable[name], name, contract, templates) for name in ("FindImage", "FindMargins"))
+    plain = (
+        _method(contract.overridable[name], name, contract, templates)
+        for name in ("FindImage", "FindMargins", "FindBias")
+    )
     signature = contract.overridable["FindProjection"]
     projections = (
         templates.get_template("methods/FindProjection.st.j2").render(contract.spelling, program=program)
@@ -104,7 +107,9 @@ def _signatures(contract: Contract) -> Iterator[Signature]:
 
 
 def _template(signature: Signature, contract: Contract) -> str:
-    return "Supplied" if signature.name in contract.supplied else signature.name.removesuffix("From")
+    if signature.name in contract.supplied:
+        return "Supplied"
+    return signature.name.removesuffix("From").replace("AxisAccelerations", "AxisVelocities")
 
 
 def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:

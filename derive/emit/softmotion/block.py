@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from derive.description.mechanism import Joint, Kind
+from derive.description.mechanism import Joint, Kind, Turning
 from derive.emit.softmotion.calls import (
     Command,
     branch_of,
@@ -22,12 +22,14 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
 from derive.ir.program import Program
-from derive.ir.symbols import START_POSITION
+from derive.ir.symbols import COORDINATE_NAMES, START_POSITION
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, chooses_by_lengths
 
+_FEW = 3
+"""The most axes of the smaller user transformation."""
 SETTINGS = "ISMKinematicAxisSettings"
 """The interface by which SoftMotion passes the limits of a drive."""
 _OF_AXIS = {
@@ -133,6 +135,8 @@ class Block:
     limit_reasons: tuple[int, ...]
     """The number of the reason that an axis is below its lower limit, for every axis; empty if the block tests more
     limits than those of its axes."""
+    is_transformation: bool
+    """Whether it is a user transformation of PacDrive, and no kinematics of SoftMotion."""
     tie: str
     """The difference up to which two squared distances count as equal; empty if it is computed, or not read."""
 
@@ -182,9 +186,10 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         turning=mechanism.task.turning.value,
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
-        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row.startswith("turn")),
+        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row not in COORDINATE_NAMES),
         margins=tuple(m.name for m in kinematics.margins),
         computed=_computed(kinematics),
+        is_transformation=bool(contract.transformations),
         tie="" if chooses_by_lengths(mechanism) or not kinematics.branches else literal(float(TIE)),
         has_settings=SETTINGS in interfaces,
         command=command_of(kinematics),
@@ -235,6 +240,7 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.limits,
         kinematics.singularity,
         kinematics.jacobian,
+        kinematics.bias,
         kinematics.image,
         kinematics.projection,
         offset_branch_of(kinematics),
@@ -313,6 +319,9 @@ def _branch_byte(byte: int, name: str, names: tuple[str, str], inputs: tuple[str
 
 
 def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:
+    if contract.transformations:
+        is_small = kinematics.mechanism.task.turning is Turning.NONE and len(kinematics.mechanism.joints) <= _FEW
+        return (contract.transformations[0 if is_small else 1],)
     has_configuration = kinematics.configuration_size > 0
     wanted = ["ISMKinematicWithInfo2", "ISMKinematicWithInitialization"]
     if has_configuration:

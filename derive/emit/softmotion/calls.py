@@ -83,10 +83,10 @@ def _solving(program: Program, kinematics: Kinematics) -> Program:
 
 
 def without_axes(program: Program | None, kinematics: Kinematics) -> Program | None:
-    """A program of axis values without the checks of its inputs, which the base block does."""
+    """A program of axis values, and of their speeds, without the checks of its inputs, which the base block does."""
     if program is None:
         return None
-    known = frozenset(joint.axis.name for joint in kinematics.mechanism.joints)
+    known = frozenset(s.name for joint in kinematics.mechanism.joints for s in (joint.axis, joint.speed))
     return _without(program, known | _POINT)
 
 

@@ -59,6 +59,10 @@ _KINDS = {
     (False, False): "Kinematics for a SoftMotion axis group. ",
 }
 """The sentences on couplings, by whether it is a position kinematics, and whether it is an orientation kinematics."""
+_TRANSFORMATION = (
+    "A user transformation of a PacDrive robot. Config has the bytes of a configuration; automatic ones are near the "
+    "last answer of Direct and Inverse, which both keep: each robot has an instance of its own. "
+)
 _WITHOUT_LENGTH = (
     f"where an axis is not determined: within {float(COINCIDENT):g} of your unit of length. The machine has no "
     "length with which this distance could be compared, so the margin is 1 everywhere else, and IsSingularity gives "
@@ -75,7 +79,8 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
     """The description of a block, with a reference to its picture."""
     names, further = inputs(kinematics).names, inputs(kinematics).notes
     mechanism = kinematics.mechanism
-    source = _KINDS[mechanism.is_position, mechanism.is_orientation]
+    kind = mechanism.is_position, mechanism.is_orientation
+    source = _TRANSFORMATION if block.is_transformation else _KINDS[kind]
     source += f"Source of the geometry: {mechanism.source}." if mechanism.source else ""
     text = templates.get_template("description.rst.j2").render(
         mechanism=mechanism,
@@ -89,7 +94,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
-        tasks=_lines(_TASKS[block.has_settings]),
+        tasks=_lines(_BOUNDED.rstrip() if block.is_transformation else _TASKS[block.has_settings]),
         notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))]
         + [line for note in further for line in _item(note)],
         verification=list(_verification(kinematics)),
@@ -188,8 +193,7 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
         text = (
-            f"A root scan is no proof: of {total} solutions, most of them close to poses where branches meet, it "
-            f"missed {missed}."
+            f"Of {total} solutions, most of them close to poses where branches meet, the root search missed {missed}."
         )
         yield from _lines(text)
 

@@ -28,7 +28,7 @@ from derive.emit.st.expression import literal
 from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import limits_function, rotation_function
-from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SOLVABLE
+from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SAME_ROTATION, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES
@@ -37,6 +37,8 @@ from derive.report.reasons import NO_MEANING, NOT_INITIALIZED
 _FOLDER = "st"
 _SHARED = "softkin"
 """The folder of the objects that all blocks share."""
+_TRANSFORMATIONS = "pacdrive"
+"""The folder of what user transformations need beside."""
 _PREAMBLE = f"""\
 // {GENERATED}
 // To paste: the text below a ruler, up to the next line with a ruler or the end of one, is the declaration or
@@ -101,7 +103,10 @@ def _objects(
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by the path without its ending."""
     rotation, limits = rotation_function(contract), limits_function(contract)
-    shared = {path.removesuffix(".st"): text for path, text in runtime(_FOLDER).items()}
+    further = runtime(_TRANSFORMATIONS) if contract.transformations else {}
+    enumerations = templates.get_template("enumerations.st.j2").render(names=contract.names)
+    yield from ((f"{_SHARED}/{one.name}", (one,)) for one in objects_of(enumerations))
+    shared = {path.removesuffix(".st"): text for path, text in {**runtime(_FOLDER), **further}.items()}
     for path in (TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2"):
         shared[f"{_SHARED}/{path.name.removesuffix('.st.j2')}"] = templates.get_template(
             f"{_SHARED}/{path.name}"
@@ -167,10 +172,11 @@ def _templates() -> Environment:
         held=literal(float(HELD)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
-        smallest=literal(float(1 / SOLVABLE)),
+        smallest=literal(1.0 / float(SOLVABLE)),
         tolerance=literal(TOLERANCE),
         statuses=[status.name for status in Status],
         not_initialized=NOT_INITIALIZED,
+        same_rotation=literal(float(SAME_ROTATION)),
         no_meaning=NO_MEANING,
         most_sides=MOST_SIDES,
         most_kept=MOST_KEPT,

@@ -37,6 +37,7 @@ _FIRST = (
     "TestLimits",
     "ReasonOf",
     "FindJacobian",
+    "FindBias",
     "FindMargins",
     "FindOrientation",
     "FindImage",
@@ -76,6 +77,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
     spelled = {name: stored_as(kinematics, name) for name in constants(kinematics)}
     for index, joint in enumerate(kinematics.mechanism.joints):
         spelled[joint.axis.name] = f"a.a{index}"
+        spelled[joint.speed.name] = f"aSpeeds[{index}]"
         spelled[joint.reference.name] = f"aRef.a{index}"
     for axis in "xyz":
         spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = (
@@ -91,7 +93,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
 
 
 def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
-    known = contract.signatures
+    known = contract.signatures | {n: s for i in contract.closure(block.interfaces) for n, s in i.methods.items()}
     names = _names(block, contract)
     programs = _programs(kinematics)
     ready: set[str] = set()
@@ -121,6 +123,7 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
         "FindProjection": kinematics.projection,
         "FindOffsetBranches": of_axes(kinematics.offset_configuration),
         "FindJacobian": of_axes(kinematics.jacobian),
+        "FindBias": of_axes(kinematics.bias),
         "IsCompatibleWithPosKin": kinematics.compatible,
         "GetPositionFromOrientation3": kinematics.end_point_shift,
         "GetOrientationImageTotal": kinematics.total_image,
@@ -169,6 +172,7 @@ def _method(
     name = source.signature.name
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
+    context["turns"] = any(p.name.endswith("Orientation") for p in source.signature.parameters)
     if name == "ReasonOf":
         context["reasons"] = texts(kinematics)
     if source.program is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import groupby
@@ -100,6 +100,8 @@ class Contract:
     is_flat: bool
     """Whether every block has the variables and methods of the base block itself, and extends none."""
     omits: frozenset[str]
+    transformations: tuple[str, ...]
+    """Of a controller without SoftMotion: the interface of a machine with three axes and no turn, and of others."""
     names: tuple[Group, ...]
     """The list of global constants."""
     spelling: Mapping[str, Mapping[str, Any]]
@@ -121,7 +123,11 @@ class Contract:
         return found
 
     def available(self, name: str) -> str | None:
-        """The interface or, where the profile lacks it, the nearest predecessor that the profile has."""
+        """The interface or, where the profile lacks it, the nearest predecessor that the profile has. None for a
+        controller without SoftMotion.
+        """
+        if self.transformations:
+            return None
         if name not in self.omits:
             return name
         bases = [self.available(base) for base in self.interfaces[name].extends]
@@ -148,13 +154,21 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
 def _loaded(profile: str | None, text: str) -> Contract:
     data = tomllib.loads(text)
     chosen = _chosen(profile or data["profile"], data["profiles"])
+    for name, other in (pair for one in chosen for pair in one.get("instead", {}).items()):
+        text = text.replace(name, other)
+    data = tomllib.loads(text)
+    for one in chosen:
+        data = _merged(data, one.get("tables", {}))
     interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
     newest = min(_version(one["library"]) for one in chosen)
     newer = {interface.name for interface in interfaces.values() if interface.since > newest}
     omits = frozenset(newer).union(*(one["omits"] for one in chosen))
+    omits |= {name for one in chosen if "keeps" in one for name in (*interfaces, data["own_interface"]["name"])
+              if name not in one["keeps"]}  # fmt: skip
     tables = data.pop("names")
     listed = tables.pop("list")
-    groups = {key: _constants(table) for key, table in tables.items()}
+    own = {name for one in chosen for name in one.get("instead", {}).values()}
+    groups = {key: _constants(table, own) for key, table in tables.items()}
     data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
     supplied, overridable = data.pop("supplied"), data.pop("overridable")
     names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
@@ -170,6 +184,7 @@ def _loaded(profile: str | None, text: str) -> Contract:
         _signatures(data.pop("private"), "PRIVATE"),
         any(one.get("flat", False) for one in chosen),
         omits,
+        tuple(name for one in chosen for name in one.get("transformations", ())),
         names,
         data,
     )
@@ -182,19 +197,25 @@ def _chosen(names: str, profiles: Mapping[str, Mapping[str, Any]]) -> tuple[Mapp
     return tuple(profiles[name] for name in names.split("+"))
 
 
+def _merged(table: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """The table with entries of another one, tables inside it alike."""
+    given = {k: _merged(table.get(k, {}), new) if isinstance(new, dict) else new for k, new in changes.items()}
+    return {**table, **given}
+
+
 def _needing(methods: Mapping[str, Mapping[str, Any]]) -> dict[str, frozenset[str]]:
     return {key: frozenset(table["of"]) for key, table in methods.items() if "of" in table}
 
 
-def _constants(table: Mapping[str, Any]) -> dict[str, Constant]:
-    """The constants of a group by the name under which templates know them."""
+def _constants(table: Mapping[str, Any], own: Collection[str]) -> dict[str, Constant]:
+    """The constants of a group by the name under which templates know them. own: types whose enumerators these are."""
     kind = table["type"]
     entries = {key: entry for key, entry in table.items() if key not in ("title", "type")}
     return {
         key: Constant(
             entry["name"],
             kind,
-            entry["value"] if kind == "BOOL" else f"{kind}.{entry['value']}",
+            entry["value"] if kind == "BOOL" else f"{kind}.{entry['name' if kind in own else 'value']}",
             entry["meaning"]
             + ("" if entry.get("documented", True) else "; not documented")
             + (f": if missing, {entry['instead']}" if "instead" in entry else ""),

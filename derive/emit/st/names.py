@@ -18,7 +18,7 @@ _NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
 _DECLARED = re.compile(r"^ +([A-Za-z]\w*) : ", re.MULTILINE)
 _OF_PLATFORMS = frozenset({"within"})
 """Constants of platforms, whose blocks have no search: its method has a variable of the same name."""
-_OF_THE_BLOCK = ("initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes")
+_OF_THE_BLOCK = ("initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", "Config", "lastAxes")
 
 TEMPLATE_LOCALS = frozenset(
     """

@@ -40,8 +40,8 @@ def with_derived_branches(mechanism: Mechanism, inverse: Inverse, forward: Forwa
 
 
 def with_named_steps(mechanism: Mechanism, trial: Inverse, forward: Forward) -> Mechanism:
-    """The mechanism of a root scan with a branch for every step of a trial: these come first, then the branches that no
-    step decides, and the crossing comes last.
+    """The mechanism of a root search with a branch for every step of a trial: these come first, then the branches that
+    no step decides, and the crossing comes last.
     """
     decided, asked, unnamed = steps_and_rest(mechanism, trial, forward)
     named = _branches_of(mechanism, trial, forward, unnamed)

@@ -1,4 +1,4 @@
-"""A mechanism with a root scan: both of its derivations, its trial with slopes, its inverse and its margins.
+"""A mechanism with a root search: both of its derivations, its trial with slopes, its inverse and its margins.
 
 A trial solves all joints but one, which is known, and leaves a residual, which is zero at a root. Like `kinematics`,
 it may import the folders from `ir` to `optimize`.
@@ -9,7 +9,6 @@ conic: where the unit circle meets a conic
 derivations: the closed form and the trial, and the branches of their steps
 guards: the conditions under which a trial is within reach
 inverse: the inverse: closed form and scan in one program
-machine_checks: checks of a trial that parameters alone decide
 margins: the margins
 own_side: the root on one side of a trial, next to an angle at which the conic meets the circle
 parabola: a step towards a root that may be double

@@ -16,8 +16,8 @@ import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closures.commanded import closure_at
-from derive.equations.closures.fixed_names import fixed_lets
 from derive.equations.conditions import with_conditions
+from derive.equations.machine_checks import with_checks
 from derive.ir.program import Let
 from derive.ir.symbols import cosine, names_in, sine
 from derive.kinematics.branches.derived import with_named_steps
@@ -164,14 +164,11 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     refuse_shared_names(mechanism, (*forward.statements, *trial.naming, *trial.derivation.statements))
     named = with_named_steps(_with_crossing(mechanism, Search(found.joint)), trial, forward)
     noted = replace(named, notes=(*mechanism.notes, _note(named, found)))
-    lets = fixed_lets(mechanism)
-    checks = tuple(check.constraint(lets) for check in dict.fromkeys(trial.checks))
-    held = replace(noted, constraints=(*noted.constraints, *checks))
-    return with_conditions(held, trial.derivation.conditions)
+    return with_conditions(with_checks(noted, trial.checks), trial.derivation.conditions)
 
 
 def _note(mechanism: Mechanism, found: _Candidate) -> str:
-    """The note about the root scan for users."""
+    """The note about the root search for users."""
     (last,) = (b for b in mechanism.branches if b.is_crossing)
     joint = found.joint.name
     first = (

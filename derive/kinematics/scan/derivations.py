@@ -1,4 +1,4 @@
-"""A mechanism with a root scan: closed form where a parameter is zero, a scan along one joint where it is not.
+"""A mechanism with a root search: closed form where a parameter is zero, a scan along one joint where it is not.
 
 Both derivations are parts of one program. Names of the closed form end in `_closed`, names of a trial in `_tried`.
 Branches are two-root steps of both derivations, as everywhere. A branch that no step of the trial decides is read off
@@ -35,7 +35,7 @@ SEARCHED = flag("searched")
 
 @dataclass(frozen=True)
 class Scanned:
-    """Both derivations of a mechanism with a root scan, and the branches of their steps."""
+    """Both derivations of a mechanism with a root search, and the branches of their steps."""
 
     mechanism: Mechanism
     forward: Forward
@@ -50,7 +50,7 @@ class Scanned:
     """How the other joints follow from the searched one, where no steps solve them; `trial` has none then."""
 
 
-@stage("the root scan")
+@stage("the root search")
 def solve_both(mechanism: Mechanism) -> Scanned:
     """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
     assert mechanism.search is not None
@@ -204,7 +204,7 @@ def sigma(branch: Branch) -> sp.Symbol:
 
 
 def wanted(branch: Branch) -> sp.Symbol:
-    """The sign of a branch as an argument of the scan."""
+    """The sign of a branch as an argument of the search."""
     return count(f"wanted_{branch.name}")
 
 

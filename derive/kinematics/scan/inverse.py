@@ -93,7 +93,7 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
 
 
 def search_given(both: Scanned) -> Program:
-    """The arguments of the scan for all roots of a pose."""
+    """The arguments of the search for all roots of a pose."""
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
     statements = (*finite(read), *naming_of(both), *searched_flag(both), _wave(both))
@@ -122,7 +122,7 @@ def search_of(both: Scanned) -> Program:
 
 
 def _chosen(both: Scanned) -> Iterable[Let]:
-    """The angle of every joint, from the scan or in closed form."""
+    """The angle of every joint, from the search or in closed form."""
     for joint in both.mechanism.solved_joints:
         name = joint.symbol.name
         if both.closed is None:

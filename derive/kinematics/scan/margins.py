@@ -1,4 +1,4 @@
-"""The margins of a mechanism with a root scan.
+"""The margins of a mechanism with a root search.
 
 The last byte of the configuration says whether the residual rises or falls at the root. The sign of this slope is that
 of det J over the product of the determinants of the trial's steps. So det J is the only margin, and no formula is

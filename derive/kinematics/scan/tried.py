@@ -1,7 +1,7 @@
 """The trials in a part of the circle: where a length is shortest, and where the residual of a branch vanishes.
 
-Both are steps of one loop, each with one trial: `Shortest` takes some points of the part and then secants of the
-growth, half the slope of the squared length; `Newton` goes on as long as the residual becomes smaller.
+Both are steps of one loop, each with one trial. The shortest length is sought from some points of the part by secants
+of the growth, half the slope of the squared length; the residual vanishes by Newton's method.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ _LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
 _ASIDE = sp.Float("1.7")
 """The tangent of 60 degrees."""
 _GRID, _SECANTS, _NEWTONS = 5, 6, 5
+"""Points and secants for the shortest length; steps of Newton's method."""
 _STILL = sp.Float("1e-10")
 """A step of this length (radians) ends the method: the steps on the closure follow."""
 _ZERO, _ONE, _MOST = sp.Integer(0), sp.Integer(1), sp.Float("1e30")
@@ -80,9 +81,9 @@ def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr) -> Iterator[L
     yield Let(NEWTON_NEXT, inside(BEST_NOW - WAY_NOW, ends))
 
 
-def newton_is_done(is_narrow: sp.Basic) -> sp.Basic:
-    """Whether Newton's method ends: there is no step in a narrow part."""
-    return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL), is_narrow)
+def newton_is_done(is_point: sp.Basic) -> sp.Basic:
+    """Whether Newton's method ends: there is no step in a part that is a point."""
+    return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL), is_point)
 
 
 def shortest_step(ends: tuple[sp.Expr, sp.Expr], growth: sp.Expr) -> Iterator[Let]:

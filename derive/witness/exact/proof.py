@@ -43,8 +43,8 @@ class Trial:
     degree: Value
     inputs: Known
     """The parameters, by the names of programs."""
-    own: dict[str, Value]
-    """The parameters, by the symbols of the description."""
+    own: dict[sp.Symbol, Value]
+    """The parameters, by the symbols of the description: the symbol of a joint may have the same name."""
     axes: dict[str, Value]
     """The planted axis values."""
     pose: dict[str, Value]
@@ -53,14 +53,16 @@ class Trial:
 
     def joints(self, axes: Mapping[str, Value]) -> dict[str, Value]:
         """The joint values of the description."""
-        return self._joints(self.described, axes, self.own)
+        return self._joints(self.described, axes, {}, self.own)
 
     def machine_joints(self) -> dict[str, Value]:
         """The planted joint values of the machine, which may have other gears: nothing is measured by them."""
         numbers = {name: _as_number(value) for name, value in self.inputs.items()}
-        return self._joints(self.kin.mechanism, self.axes, numbers)
+        return self._joints(self.kin.mechanism, self.axes, numbers, {})
 
-    def _joints(self, of: Mechanism, axes: Mapping[str, Value], known: Mapping[str, Value]) -> dict[str, Value]:
+    def _joints(
+        self, of: Mechanism, axes: Mapping[str, Value], known: Mapping[str, Value], own: Mapping[sp.Symbol, Value]
+    ) -> dict[str, Value]:
         motors: dict[str, Value] = {}
         for joint in of.joints:
             offset = self.inputs[joint.offset.name]
@@ -68,7 +70,7 @@ class Trial:
             motor = axes[joint.axis.name] + -offset
             motors[joint.motor.name] = motor * self.degree if joint.in_degrees else motor
         expressions = [j.motor * j.ratio + j.coupling for j in of.joints]
-        values = evaluated(expressions, {**known, **motors}, self.angles, self.degree)
+        values = evaluated(expressions, {**known, **motors}, self.angles, self.degree, own)
         return {j.symbol.name: v for j, v in zip(of.joints, values, strict=True)}
 
     def equations(self, axes: Mapping[str, Value], pose: Mapping[str, Value]) -> list[int]:
@@ -81,7 +83,7 @@ class Trial:
         if self.described.heading is not None:
             heading = self.described.heading
             stated += [sp.cos(heading) - ROTATION_ENTRIES[0], sp.sin(heading) - ROTATION_ENTRIES[3]]
-        values = evaluated(stated, {**self.own, **joints, **pose}, self.angles, self.degree)
+        values = evaluated(stated, {**joints, **pose}, self.angles, self.degree, self.own)
         return [v.number for v in values]
 
     def commanded(self) -> tuple[str, ...]:
@@ -98,7 +100,7 @@ def frame_of(trial: Trial, joints: Mapping[str, Value]) -> dict[str, Value]:
     """The frame at the end of the chain of the description, multiplied out factor by factor."""
     assert trial.described.chain is not None
     factors = trial.described.chain.factors
-    amounts = evaluated([f.amount for f in factors], {**trial.own, **joints}, trial.angles, trial.degree)
+    amounts = evaluated([f.amount for f in factors], joints, trial.angles, trial.degree, trial.own)
     position, columns = [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
     half_a_turn = trial.degree * fraction(Fraction(180))
     for factor, amount in zip(factors, amounts, strict=True):
@@ -203,9 +205,9 @@ def drawn(kin: Kinematics, described: Mechanism, rng: Random, multiple: int, ste
 
     inputs: Known = {p.name: ZERO if p.name in kin.limit_inputs else _parameter(p, rng, angle) for p in kin.parameters}
     named = {p.given_name: p.name for p in kin.mechanism.parameters}
-    numbers = {p.symbol.name: evaluated([p.fixed], {}, angles, degree)[0] for p in described.parameters if p.fixed}
-    given = [p for p in described.parameters if p.symbol.name not in numbers]
-    own = numbers | {p.symbol.name: _as_number(inputs[named[p.given_name]]) for p in given}
+    numbers = {p.symbol: evaluated([p.fixed], {}, angles, degree)[0] for p in described.parameters if p.fixed}
+    given = [p for p in described.parameters if p.symbol not in numbers]
+    own = numbers | {p.symbol: _as_number(inputs[named[p.given_name]]) for p in given}
     axes = {j.axis.name: angle(j.axis.name) if j.in_degrees else Value(_any(rng)) for j in described.joints}
     trial = Trial(kin, described, angles, degree, inputs, own, axes, {}, steps)
     _know(trial)
@@ -225,7 +227,7 @@ def _know(trial: Trial) -> None:
     else:
         stated = [f.args[0] for e in trial.described.equations for f in sp.sympify(e).atoms(sp.sin, sp.cos)]
     moving = sorted((a for a in {*stated, *turned} if a.free_symbols & turned), key=sp.default_sort_key)
-    moved = evaluated(moving, {**trial.own, **joints}, trial.angles, trial.degree)
+    moved = evaluated(moving, joints, trial.angles, trial.degree, trial.own)
     for angle in (*moved, *trial.machine_joints().values()):
         if angle.form is not None:
             trial.angles.know(angle)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, reduce
 from operator import add, mul
+from types import MappingProxyType
 
 import sympy as sp
 from sympy.core.relational import Relational
@@ -274,8 +275,14 @@ def _eliminated(matrix: list[list[int]], right: list[list[int]]) -> int:
 
 
 def evaluated(
-    expressions: Sequence[sp.Basic], values: Mapping[str, Value], angles: Angles, degree: Value
+    expressions: Sequence[sp.Basic],
+    values: Mapping[str, Value],
+    angles: Angles,
+    degree: Value,
+    own: Mapping[sp.Symbol, Value] = MappingProxyType({}),
 ) -> list[Value]:
-    """Expressions of a description."""
-    run = Run(Program("", (), (), ()), {**values}, angles, Signs(), degree)
-    return [run.number(sp.sympify(e)) for e in expressions]
+    """Expressions of a description. own: values of symbols that may share their names with others."""
+    apart = {symbol: sp.Symbol(f"own {symbol.name}") for symbol in own}
+    known: Known = {**values, **{apart[symbol].name: value for symbol, value in own.items()}}
+    run = Run(Program("", (), (), ()), known, angles, Signs(), degree)
+    return [run.number(sp.sympify(e).xreplace(apart)) for e in expressions]

@@ -479,17 +479,17 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       *(sum_in_rounding_0 + sum_in_rounding_0_2 + sum_in_rounding_0_3 + sum_in_rounding_0_4
       + sum_in_rounding_0_5 + sum_in_rounding_0_6 + sum_in_rounding_0_7 + sum_in_rounding_0_8
       + fabs(wave_cos_0));
-  const double size_of_wave_cos_9_times_32 = 32.0*fabs(wave_cos_9);
-  const double rounding_1 = size_of_wave_cos_9_times_32 > rounding_0 ? size_of_wave_cos_9_times_32
+  const double size_of_wave_cos_9_times_1000 = 1000.0*fabs(wave_cos_9);
+  const double rounding_1 = size_of_wave_cos_9_times_1000 > rounding_0 ? size_of_wave_cos_9_times_1000
       : rounding_0;
-  const double size_of_wave_cos_10_times_32 = 32.0*fabs(wave_cos_10);
-  const double rounding_2 = size_of_wave_cos_10_times_32 > rounding_1 ? size_of_wave_cos_10_times_32
+  const double size_of_wave_cos_10_times_1000 = 1000.0*fabs(wave_cos_10);
+  const double rounding_2 = size_of_wave_cos_10_times_1000 > rounding_1 ? size_of_wave_cos_10_times_1000
       : rounding_1;
-  const double size_of_wave_sin_9_times_32 = 32.0*fabs(wave_sin_9);
-  const double rounding_3 = size_of_wave_sin_9_times_32 > rounding_2 ? size_of_wave_sin_9_times_32
+  const double size_of_wave_sin_9_times_1000 = 1000.0*fabs(wave_sin_9);
+  const double rounding_3 = size_of_wave_sin_9_times_1000 > rounding_2 ? size_of_wave_sin_9_times_1000
       : rounding_2;
-  const double size_of_wave_sin_10_times_32 = 32.0*fabs(wave_sin_10);
-  const double rounding_4 = size_of_wave_sin_10_times_32 > rounding_3 ? size_of_wave_sin_10_times_32
+  const double size_of_wave_sin_10_times_1000 = 1000.0*fabs(wave_sin_10);
+  const double rounding_4 = size_of_wave_sin_10_times_1000 > rounding_3 ? size_of_wave_sin_10_times_1000
       : rounding_3;
   const double sum_in_bound_of_fifth = 2.025*sum_in_rounding_0_2 + 64.8*sum_in_rounding_0_3
       + 0.008333333333333333*sum_in_rounding_0_4 + 0.26666666666666666*sum_in_rounding_0_5
@@ -1307,7 +1307,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   int steps_left = 0;
   bool was_mirrored = false;
   double nearest = 9.0;
-  int passes_left = 2000;
+  int passes_left = 1500;
   double at = 0.0;
   int trials = 0;
   double best = 0.0;
@@ -1316,6 +1316,12 @@ static softkin_status find_root(const void *machine, const double *given, double
   double last = 0.0;
   double growth_before = 0.0;
   double bend = 0.0;
+  double settled_1 = 9.0;
+  double settled_2 = 9.0;
+  double settled_3 = 9.0;
+  double settled_4 = 9.0;
+  double settled_5 = 9.0;
+  double settled_6 = 9.0;
   double q1 = 0.0;
   double met_from_q1 = 0.0;
   double kept_q1 = 0.0;
@@ -1337,20 +1343,21 @@ static softkin_status find_root(const void *machine, const double *given, double
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
       begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
-      moved_q5, moved_q6, start_minus_q6, distance, nearest_now, moved, place_next, width_next, shortest_now,
-      growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
+      moved_q5, moved_q6, start_minus_q6, way_ahead, nearest_now, moved, place_next, width_next,
+      shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
       spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
       value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
       place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
-      q1_next, met_from_q1_next, kept_q1_next, q2_next, met_from_q2_next, kept_q2_next, q3_next,
-      met_from_q3_next, kept_q3_next, q4_next, met_from_q4_next, kept_q4_next, q5_next, met_from_q5_next,
-      kept_q5_next, q6_next, met_from_q6_next, kept_q6_next;
+      settled_1_next, settled_2_next, settled_3_next, settled_4_next, settled_5_next, settled_6_next,
+      q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next, kept_now_q2, q3_next,
+      met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next, met_from_q5_next,
+      kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
-  bool is_rounding, is_less, is_settled, is_near, steps_end, meets_pose, fits, way_ends, is_better,
+  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends, is_better,
       is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
       seeks_length, turns_back, is_over, was_mirrored_next;
-  for (int pass = 0; pass < 2001; pass += 1) {
+  for (int pass = 0; pass < 1501; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
     if (stage == 0) {
@@ -1390,9 +1397,12 @@ static softkin_status find_root(const void *machine, const double *given, double
     best_now_minus_way_now = best_now - way_now;
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
-    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 8) || (fabs(at - newton_place) <= 1e-10));
-    is_near = is_settled && ((width > 1e-6)
-        || ((least_now <= 0.001) && ((room_of_trial <= 1e-6) || (side > 0))));
+    is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 5) || (fabs(at - newton_place) <= 1e-10));
+    is_known = (fabs(best_now - settled_1) <= 1e-9) || (fabs(best_now - settled_2) <= 1e-9)
+        || (fabs(best_now - settled_3) <= 1e-9) || (fabs(best_now - settled_4) <= 1e-9)
+        || (fabs(best_now - settled_5) <= 1e-9) || (fabs(best_now - settled_6) <= 1e-9);
+    is_near = is_settled && (((!is_known) && (width > 1e-6))
+        || ((least_now <= 0.001) && (width <= 1e-6) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
@@ -1442,21 +1452,21 @@ static softkin_status find_root(const void *machine, const double *given, double
         && (place_ >= (onward ? sum_in_way_ends
         : (nearest < 180.0*SOFTKIN_DEGREE ? 2e-7 + nearest : 180.0*SOFTKIN_DEGREE)));
     start_minus_q6 = start_ - q6;
-    distance = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
         + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
         cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
         : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
-    is_better = fits && meets_pose && (distance < nearest)
-        && ((!onward) || ((distance > 1e-7) && (distance < sum_in_way_ends)));
-    nearest_now = is_better ? distance : nearest;
-    is_shortest = (stage == 1) && (trials >= 21);
+    is_better = fits && meets_pose && (way_ahead < nearest)
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends)));
+    nearest_now = is_better ? way_ahead : nearest;
+    is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
         + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
     mirrors = meets_pose && (!fits) && (!was_mirrored) && (moved > 1e-8);
     part_ends = (stage == 0) && (width > 0.0) && ((!is_rounding) || (width >= 0.5));
     start_ends = (is_settled && (!is_near)) || (steps_end && (!mirrors));
     number_of_start_plus_one = 1 + number_of_start;
-    next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.0001 ? 3 : (width <= 0.01 ? 5 : 9)))
+    next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.001 ? 3 : (width <= 0.1 ? 5 : 9)))
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 15 ? number_of_start_plus_one : 0));
@@ -1479,30 +1489,30 @@ static softkin_status find_root(const void *machine, const double *given, double
         : ((!is_rounding) && (stage == 0) && (width <= 0.0) ? place_ + safe_step : place_));
     width_next = turns_back ? 0.0
         : (part_is_done ? 0.0 : ((!part_ends) && (stage == 0)
-        ? (width > 0.0 ? 2.0*width : (is_rounding ? 1e-13 : 0.0)) : width));
+        ? (width > 0.0 ? (width <= 1e-6 ? 8.0 : 2.0)*width : (is_rounding ? 1e-13 : 0.0)) : width));
     side_next = part_ends ? 1 : (side_ends ? -1 : side);
     shortest_now = is_shortest ? best_now : shortest;
     growth = (number_of_start > 12 ? growth_2 : growth_1)*real_of_direction;
     gap = growth - growth_before;
     way_of_trial = at - last;
-    bend_now = (trials > 9) && (gap*way_of_trial > 0.0)
-        ? gap/((trials > 9) && (gap*way_of_trial > 0.0) ? way_of_trial : 1.0) : bend;
+    bend_now = (trials > 5) && (gap*way_of_trial > 0.0)
+        ? gap/((trials > 5) && (gap*way_of_trial > 0.0) ? way_of_trial : 1.0) : bend;
     bend_now_2 = bend_now > 0.0 ? bend_now : 1.0;
     aside_now = is_shortest ? (bend_now > 0.0 ? 1.7*least_now/softkin_root(bend_now_2) : 0.0) : aside;
     error_before_next = is_near || mirrors ? 9.0 : error;
     steps_left_next = is_near || mirrors ? 64 : steps_left + (error > 0.999*error_before ? -8 : -1);
     was_mirrored_next = (!is_near) && (mirrors || was_mirrored);
     passes_left_next = passes_left - 1;
-    spread = 0.125*width;
+    spread = 0.25*width;
     spread_times_1_by_4 = 0.25*spread;
     best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4;
     at_minus_growth_by_bend_now = at - growth/bend_now_2;
-    value_in_shortening_place = trials < 9 ? best_now
-        : (trials == 9 ? (best_now_plus_spread_times_1_by_4 > place_plus_width ? best_now
+    value_in_shortening_place = trials < 5 ? best_now
+        : (trials == 5 ? (best_now_plus_spread_times_1_by_4 > place_plus_width ? best_now
         - spread_times_1_by_4 : best_now_plus_spread_times_1_by_4)
         : (at_minus_growth_by_bend_now < place_ ? place_
         : (at_minus_growth_by_bend_now > place_plus_width ? place_plus_width : at_minus_growth_by_bend_now)));
-    shortening_place = trials < 8 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
+    shortening_place = trials < 4 ? place_ + (1.0 + trials)*spread : value_in_shortening_place;
     sum_in_place_of_start = place_
         + (number_now == 9 ? 0.875
         : (number_now == 8 ? 0.625
@@ -1524,24 +1534,30 @@ static softkin_status find_root(const void *machine, const double *given, double
     last_next = begins || is_shortest ? place_of_start : at;
     growth_before_next = begins || is_shortest ? 0.0 : growth;
     bend_next = begins || is_shortest ? 0.0 : bend_now;
+    settled_1_next = is_first ? 9.0 : (is_near ? best_now : settled_1);
+    settled_2_next = is_first ? 9.0 : (is_near ? settled_1 : settled_2);
+    settled_3_next = is_first ? 9.0 : (is_near ? settled_2 : settled_3);
+    settled_4_next = is_first ? 9.0 : (is_near ? settled_3 : settled_4);
+    settled_5_next = is_first ? 9.0 : (is_near ? settled_4 : settled_5);
+    settled_6_next = is_first ? 9.0 : (is_near ? settled_5 : settled_6);
     q1_next = is_near ? begun_q1 : (mirrors ? 2.0*met_from_q1 - q1 : moved_q1);
     met_from_q1_next = is_near ? begun_q1 : met_from_q1;
-    kept_q1_next = is_better ? q1 : kept_q1;
+    kept_now_q1 = is_better ? q1 : kept_q1;
     q2_next = is_near ? begun_q2 : (mirrors ? 2.0*met_from_q2 - q2 : moved_q2);
     met_from_q2_next = is_near ? begun_q2 : met_from_q2;
-    kept_q2_next = is_better ? q2 : kept_q2;
+    kept_now_q2 = is_better ? q2 : kept_q2;
     q3_next = is_near ? begun_q3 : (mirrors ? 2.0*met_from_q3 - q3 : moved_q3);
     met_from_q3_next = is_near ? begun_q3 : met_from_q3;
-    kept_q3_next = is_better ? q3 : kept_q3;
+    kept_now_q3 = is_better ? q3 : kept_q3;
     q4_next = is_near ? begun_q4 : (mirrors ? 2.0*met_from_q4 - q4 : moved_q4);
     met_from_q4_next = is_near ? begun_q4 : met_from_q4;
-    kept_q4_next = is_better ? q4 : kept_q4;
+    kept_now_q4 = is_better ? q4 : kept_q4;
     q5_next = is_near ? begun_q5 : (mirrors ? 2.0*met_from_q5 - q5 : moved_q5);
     met_from_q5_next = is_near ? begun_q5 : met_from_q5;
-    kept_q5_next = is_better ? q5 : kept_q5;
+    kept_now_q5 = is_better ? q5 : kept_q5;
     q6_next = is_near ? begun_q6 : (mirrors ? 2.0*met_from_q6 - q6 : moved_q6);
     met_from_q6_next = is_near ? begun_q6 : met_from_q6;
-    kept_q6_next = is_better ? q6 : kept_q6;
+    kept_now_q6 = is_better ? q6 : kept_q6;
     if (is_over || (!looked_for)) {
       break;
     }
@@ -1566,33 +1582,39 @@ static softkin_status find_root(const void *machine, const double *given, double
     last = last_next;
     growth_before = growth_before_next;
     bend = bend_next;
+    settled_1 = settled_1_next;
+    settled_2 = settled_2_next;
+    settled_3 = settled_3_next;
+    settled_4 = settled_4_next;
+    settled_5 = settled_5_next;
+    settled_6 = settled_6_next;
     q1 = q1_next;
     met_from_q1 = met_from_q1_next;
-    kept_q1 = kept_q1_next;
+    kept_q1 = kept_now_q1;
     q2 = q2_next;
     met_from_q2 = met_from_q2_next;
-    kept_q2 = kept_q2_next;
+    kept_q2 = kept_now_q2;
     q3 = q3_next;
     met_from_q3 = met_from_q3_next;
-    kept_q3 = kept_q3_next;
+    kept_q3 = kept_now_q3;
     q4 = q4_next;
     met_from_q4 = met_from_q4_next;
-    kept_q4 = kept_q4_next;
+    kept_q4 = kept_now_q4;
     q5 = q5_next;
     met_from_q5 = met_from_q5_next;
-    kept_q5 = kept_q5_next;
+    kept_q5 = kept_now_q5;
     q6 = q6_next;
     met_from_q6 = met_from_q6_next;
-    kept_q6 = kept_q6_next;
+    kept_q6 = kept_now_q6;
   }
   found[0] = nearest_now < 9.0;
   found[1] = (nearest_now < 9.0 ? nearest_now : 0.0);
-  found[2] = kept_q1;
-  found[3] = kept_q2;
-  found[4] = kept_q3;
-  found[5] = kept_q4;
-  found[6] = kept_q5;
-  found[7] = kept_q6;
+  found[2] = kept_now_q1;
+  found[3] = kept_now_q2;
+  found[4] = kept_now_q3;
+  found[5] = kept_now_q4;
+  found[6] = kept_now_q5;
+  found[7] = kept_now_q6;
   return SOFTKIN_OK;
 }
 
@@ -2310,6 +2332,175 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
+      axis_a6 = axes[5], speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2],
+      speed_a4 = speeds[3], speed_a5 = speeds[4], speed_a6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6,
+      axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 12)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double q1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double sin_q1 = sin(q1);
+  const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double cos_q1 = cos(q1);
+  const double sin_q23 = sin(q2_plus_q3);
+  const double y_at_q2 = k->a1*sin_q1;
+  const double sin_q2 = sin(q2);
+  const double r23_at_q2 = sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double r23_at_q23 = sin_q1*sin_q23;
+  const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double q5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
+  const double y = y_at_q6 + k->d6*r23_at_q5;
+  const double rate_of_sin_q1 = speed_a1*cos_q1;
+  const double speed_a2_plus_speed_a3 = speed_a2 + speed_a3;
+  const double rate_of_cos_q23 = -speed_a2_plus_speed_a3*sin_q23;
+  const double rate_of_r21_at_q23 = rate_of_sin_q1*cos_q23 + rate_of_cos_q23*sin_q1;
+  const double rate_of_cos_q1 = -speed_a1*sin_q1;
+  const double rate_of_sin_q23 = speed_a2_plus_speed_a3*cos_q23;
+  const double rate_of_r23_at_q23 = rate_of_sin_q1*sin_q23 + rate_of_sin_q23*sin_q1;
+  const double rate_of_sin_q4 = speed_a4*cos_q4;
+  const double rate_of_cos_q4 = -speed_a4*sin_q4;
+  const double rate_of_r23_at_q4 = rate_of_r23_at_q23*cos_q4 + r23_at_q23*rate_of_cos_q4
+      - rate_of_sin_q4*cos_q1 - rate_of_cos_q1*sin_q4;
+  const double rate_of_sin_q5 = speed_a5*cos_q5;
+  const double rate_of_cos_q5 = -speed_a5*sin_q5;
+  const double rate_of_r23_at_q5 = rate_of_r23_at_q4*cos_q5 + r21_at_q23*rate_of_sin_q5
+      + r23_at_q4*rate_of_cos_q5 + rate_of_r21_at_q23*sin_q5;
+  const double rate_of_y_at_q2 = k->a1*rate_of_sin_q1;
+  const double cos_q2 = cos(q2);
+  const double rate_of_sin_q2 = speed_a2*cos_q2;
+  const double rate_of_r23_at_q2 = rate_of_sin_q1*sin_q2 + rate_of_sin_q2*sin_q1;
+  const double rate_of_y_at_q3 = rate_of_y_at_q2 + k->a2*rate_of_r23_at_q2;
+  const double rate_of_y_at_q4 = rate_of_y_at_q3 + k->a3*rate_of_r23_at_q23;
+  const double rate_of_y_at_q5 = rate_of_y_at_q4 + k->d4*rate_of_r21_at_q23;
+  const double rate_of_r21_at_q5 = rate_of_r21_at_q23*cos_q5 + r21_at_q23*rate_of_cos_q5
+      - r23_at_q4*rate_of_sin_q5 - rate_of_r23_at_q4*sin_q5;
+  const double rate_of_y_at_q6 = rate_of_y_at_q5 + k->j6_offset_x*rate_of_r21_at_q5;
+  const double rate_of_y = rate_of_y_at_q6 + k->d6*rate_of_r23_at_q5;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double rate_of_r33_at_q4 = rate_of_cos_q4*cos_q23 + rate_of_cos_q23*cos_q4;
+  const double rate_of_r33_at_q5 = rate_of_r33_at_q4*cos_q5 + r33_at_q4*rate_of_cos_q5
+      - rate_of_sin_q23*sin_q5 - rate_of_sin_q5*sin_q23;
+  const double rate_of_cos_q2 = -speed_a2*sin_q2;
+  const double rate_of_z_at_q3 = k->a2*rate_of_cos_q2;
+  const double rate_of_z_at_q4 = rate_of_z_at_q3 + k->a3*rate_of_cos_q23;
+  const double rate_of_z_at_q5 = rate_of_z_at_q4 - k->d4*rate_of_sin_q23;
+  const double rate_of_r31_at_q5 = -rate_of_sin_q23*cos_q5 - r33_at_q4*rate_of_sin_q5
+      - rate_of_cos_q5*sin_q23 - rate_of_r33_at_q4*sin_q5;
+  const double rate_of_z_at_q6 = rate_of_z_at_q5 + k->j6_offset_x*rate_of_r31_at_q5;
+  const double rate_of_z = rate_of_z_at_q6 + k->d6*rate_of_r33_at_q5;
+  const double rate_of_r22_at_q4 = rate_of_cos_q4*cos_q1 + rate_of_cos_q1*cos_q4 + r23_at_q23*rate_of_sin_q4
+      + rate_of_r23_at_q23*sin_q4;
+  const double rate_of_r32_at_q4 = rate_of_sin_q4*cos_q23 + rate_of_cos_q23*sin_q4;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double r13_at_q2 = cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double r13_at_q23 = cos_q1*sin_q23;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
+  const double x = x_at_q6 + k->d6*r13_at_q5;
+  const double rate_of_r11_at_q23 = rate_of_cos_q23*cos_q1 + rate_of_cos_q1*cos_q23;
+  const double rate_of_r13_at_q23 = rate_of_sin_q23*cos_q1 + rate_of_cos_q1*sin_q23;
+  const double rate_of_r13_at_q4 = rate_of_r13_at_q23*cos_q4 + r13_at_q23*rate_of_cos_q4
+      + rate_of_sin_q1*sin_q4 + rate_of_sin_q4*sin_q1;
+  const double rate_of_r13_at_q5 = rate_of_r13_at_q4*cos_q5 + r11_at_q23*rate_of_sin_q5
+      + r13_at_q4*rate_of_cos_q5 + rate_of_r11_at_q23*sin_q5;
+  const double rate_of_x_at_q2 = k->a1*rate_of_cos_q1;
+  const double rate_of_r13_at_q2 = rate_of_sin_q2*cos_q1 + rate_of_cos_q1*sin_q2;
+  const double rate_of_x_at_q3 = rate_of_x_at_q2 + k->a2*rate_of_r13_at_q2;
+  const double rate_of_x_at_q4 = rate_of_x_at_q3 + k->a3*rate_of_r13_at_q23;
+  const double rate_of_x_at_q5 = rate_of_x_at_q4 + k->d4*rate_of_r11_at_q23;
+  const double rate_of_r11_at_q5 = rate_of_r11_at_q23*cos_q5 + r11_at_q23*rate_of_cos_q5
+      - r13_at_q4*rate_of_sin_q5 - rate_of_r13_at_q4*sin_q5;
+  const double rate_of_x_at_q6 = rate_of_x_at_q5 + k->j6_offset_x*rate_of_r11_at_q5;
+  const double rate_of_x = rate_of_x_at_q6 + k->d6*rate_of_r13_at_q5;
+  const double rate_of_r12_at_q4 = r13_at_q23*rate_of_sin_q4 + rate_of_r13_at_q23*sin_q4
+      - rate_of_sin_q1*cos_q4 - rate_of_cos_q4*sin_q1;
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
+  const double z = z_at_q6 + k->d6*r33_at_q5;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double shared_sum = (k->d1 - z)*speed_a2 + (z_at_q3 - z)*speed_a3;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double shared_sum_2 = speed_a1 + r32_at_q4*speed_a5 + r33_at_q5*speed_a6 - speed_a4*sin_q23;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double shared_sum_3 = speed_a2_plus_speed_a3*cos_q1 + r21_at_q23*speed_a4 + r22_at_q4*speed_a5
+      + r23_at_q5*speed_a6;
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double shared_sum_4 = r11_at_q23*speed_a4 + r12_at_q4*speed_a5 + r13_at_q5*speed_a6
+      - speed_a2_plus_speed_a3*sin_q1;
+  const double speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3*speed_a3;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double shared_sum_5 = (r32_at_q4*rate_of_y_at_q5 + rate_of_r22_at_q4*z_minus_z_at_q5
+      - r22_at_q4*rate_of_z_at_q5 - rate_of_r32_at_q4*y_minus_y_at_q5)*speed_a5
+      + (r33_at_q5*rate_of_y_at_q6 + rate_of_r23_at_q5*z_minus_z_at_q6 - r23_at_q5*rate_of_z_at_q6
+      - rate_of_r33_at_q5*y_minus_y_at_q6)*speed_a6;
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double shared_sum_6 = (r32_at_q4*rate_of_x_at_q5 + rate_of_r12_at_q4*z_minus_z_at_q5
+      - r12_at_q4*rate_of_z_at_q5 - rate_of_r32_at_q4*x_minus_x_at_q5)*speed_a5
+      + (r33_at_q5*rate_of_x_at_q6 + rate_of_r13_at_q5*z_minus_z_at_q6 - r13_at_q5*rate_of_z_at_q6
+      - rate_of_r33_at_q5*x_minus_x_at_q6)*speed_a6;
+  const double shared_sum_8 = (rate_of_x_at_q2*speed_a2 + rate_of_x_at_q3*speed_a3)*cos_q1
+      + (rate_of_y_at_q2*speed_a2 + rate_of_y_at_q3*speed_a3)*sin_q1
+      + (r23_at_q5*rate_of_x_at_q6 + rate_of_r13_at_q5*y_minus_y_at_q6 - r13_at_q5*rate_of_y_at_q6
+      - rate_of_r23_at_q5*x_minus_x_at_q6)*speed_a6;
+  const double shared_sum_7 = (r11_at_q23*rate_of_y_at_q4 + rate_of_r21_at_q23*x_minus_x_at_q4
+      - r21_at_q23*rate_of_x_at_q4 - rate_of_r11_at_q23*y_minus_y_at_q4)*speed_a4
+      + (r12_at_q4*rate_of_y_at_q5 + rate_of_r22_at_q4*x_minus_x_at_q5 - r22_at_q4*rate_of_x_at_q5
+      - rate_of_r12_at_q4*y_minus_y_at_q5)*speed_a5;
+  accelerations[0] = shared_sum_5 + rate_of_z*shared_sum_3
+      + (rate_of_r21_at_q23*z_minus_z_at_q4 + rate_of_sin_q23*y_minus_y_at_q4 - r21_at_q23*rate_of_z_at_q4
+      - rate_of_y_at_q4*sin_q23)*speed_a4 - speed_a3_times_rate_of_z_at_q3*cos_q1 - rate_of_cos_q1*shared_sum
+      - rate_of_y*shared_sum_2;
+  accelerations[1] = rate_of_x*shared_sum_2
+      + (r11_at_q23*rate_of_z_at_q4 + rate_of_x_at_q4*sin_q23 - rate_of_r11_at_q23*z_minus_z_at_q4
+      - rate_of_sin_q23*x_minus_x_at_q4)*speed_a4 - shared_sum_6 - rate_of_sin_q1*shared_sum
+      - rate_of_z*shared_sum_4 - speed_a3_times_rate_of_z_at_q3*sin_q1;
+  accelerations[2] = shared_sum_8 + rate_of_cos_q1*((x_at_q2 - x)*speed_a2 + (x_at_q3 - x)*speed_a3)
+      + rate_of_sin_q1*((y_at_q2 - y)*speed_a2 + (y_at_q3 - y)*speed_a3) + rate_of_y*shared_sum_4
+      - shared_sum_7 - rate_of_x*shared_sum_3;
+  accelerations[3] = rate_of_r11_at_q23*speed_a4 + rate_of_r12_at_q4*speed_a5 + rate_of_r13_at_q5*speed_a6
+      - rate_of_sin_q1*speed_a2_plus_speed_a3;
+  accelerations[4] = rate_of_cos_q1*speed_a2_plus_speed_a3 + rate_of_r21_at_q23*speed_a4
+      + rate_of_r22_at_q4*speed_a5 + rate_of_r23_at_q5*speed_a6;
+  accelerations[5] = rate_of_r32_at_q4*speed_a5 + rate_of_r33_at_q5*speed_a6 - rate_of_sin_q23*speed_a4;
+  return SOFTKIN_OK;
+}
+
 /* Arguments of the search. */
 static softkin_status find_search_given(const void *machine, const softkin_frame *frame, const int8_t *signs,
     const int8_t *turns, const double *reference, double *given, softkin_refusal *why) {
@@ -2582,6 +2773,7 @@ const softkin_mechanism ac6_rzryryrxryrz_j6offset_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .search_given = find_search_given,
     .from_joints = find_from_joints,
     .every_root = find_every_root,
@@ -2636,6 +2828,18 @@ softkin_status ac6_rzryryrxryrz_j6offset_branches(const ac6_rzryryrxryrz_j6offse
 softkin_status ac6_rzryryrxryrz_j6offset_jacobian(const ac6_rzryryrxryrz_j6offset_machine *machine,
     const double *axes, double *rows, softkin_refusal *why) {
   return softkin_jacobian(&ac6_rzryryrxryrz_j6offset_mechanism, machine, axes, rows, why);
+}
+
+softkin_status ac6_rzryryrxryrz_j6offset_axis_velocities(const ac6_rzryryrxryrz_j6offset_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&ac6_rzryryrxryrz_j6offset_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status ac6_rzryryrxryrz_j6offset_axis_accelerations(const ac6_rzryryrxryrz_j6offset_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  return softkin_axis_accelerations(&ac6_rzryryrxryrz_j6offset_mechanism, machine, axes, velocities,
+      twist_rate, accelerations, why);
 }
 
 softkin_status ac6_rzryryrxryrz_j6offset_singularity(const ac6_rzryryrxryrz_j6offset_machine *machine,

@@ -1093,6 +1093,144 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const ac6_threeparallel_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
+      axis_a6 = axes[5], speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2],
+      speed_a4 = speeds[3], speed_a5 = speeds[4], speed_a6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6,
+      axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 12)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double q1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_q1 = cos(q1);
+  const double sin_q1 = sin(q1);
+  const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double cos_q2 = cos(q2);
+  const double r21_at_q2 = cos_q2*sin_q1;
+  const double y_at_q3 = k->a2*r21_at_q2;
+  const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double y_at_q4 = y_at_q3 + k->a3*r21_at_q23;
+  const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
+  const double q2_plus_q3_plus_q4 = q2_plus_q3 + q4;
+  const double cos_q234 = cos(q2_plus_q3_plus_q4);
+  const double r21_at_q234 = cos_q234*sin_q1;
+  const double q5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r22_at_q5 = cos_q1*cos_q5 + r21_at_q234*sin_q5;
+  const double sin_q234 = sin(q2_plus_q3_plus_q4);
+  const double r23_at_q234 = -sin_q1*sin_q234;
+  const double y_at_q5 = y_at_q4 - k->d4*cos_q1;
+  const double y_at_q6 = y_at_q5 - k->d5*r23_at_q234;
+  const double y = y_at_q6 - k->d6*r22_at_q5;
+  const double rate_of_cos_q1 = -speed_a1*sin_q1;
+  const double speed_a2_plus_speed_a3 = speed_a2 + speed_a3;
+  const double speed_a2_plus_speed_a3_plus_speed_a4 = speed_a2_plus_speed_a3 + speed_a4;
+  const double rate_of_cos_q234 = -speed_a2_plus_speed_a3_plus_speed_a4*sin_q234;
+  const double rate_of_sin_q1 = speed_a1*cos_q1;
+  const double rate_of_r21_at_q234 = rate_of_sin_q1*cos_q234 + rate_of_cos_q234*sin_q1;
+  const double rate_of_sin_q5 = speed_a5*cos_q5;
+  const double rate_of_cos_q5 = -speed_a5*sin_q5;
+  const double rate_of_r22_at_q5 = rate_of_cos_q5*cos_q1 + rate_of_cos_q1*cos_q5 + r21_at_q234*rate_of_sin_q5
+      + rate_of_r21_at_q234*sin_q5;
+  const double rate_of_sin_q234 = speed_a2_plus_speed_a3_plus_speed_a4*cos_q234;
+  const double rate_of_r23_at_q234 = -rate_of_sin_q1*sin_q234 - rate_of_sin_q234*sin_q1;
+  const double sin_q2 = sin(q2);
+  const double rate_of_cos_q2 = -speed_a2*sin_q2;
+  const double rate_of_r21_at_q2 = rate_of_sin_q1*cos_q2 + rate_of_cos_q2*sin_q1;
+  const double rate_of_y_at_q3 = k->a2*rate_of_r21_at_q2;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double rate_of_cos_q23 = -speed_a2_plus_speed_a3*sin_q23;
+  const double rate_of_r21_at_q23 = rate_of_sin_q1*cos_q23 + rate_of_cos_q23*sin_q1;
+  const double rate_of_y_at_q4 = rate_of_y_at_q3 + k->a3*rate_of_r21_at_q23;
+  const double rate_of_y_at_q5 = rate_of_y_at_q4 - k->d4*rate_of_cos_q1;
+  const double rate_of_y_at_q6 = rate_of_y_at_q5 - k->d5*rate_of_r23_at_q234;
+  const double rate_of_y = rate_of_y_at_q6 - k->d6*rate_of_r22_at_q5;
+  const double rate_of_r32_at_q5 = rate_of_sin_q234*sin_q5 + rate_of_sin_q5*sin_q234;
+  const double rate_of_sin_q2 = speed_a2*cos_q2;
+  const double rate_of_z_at_q3 = k->a2*rate_of_sin_q2;
+  const double rate_of_sin_q23 = speed_a2_plus_speed_a3*cos_q23;
+  const double rate_of_z_at_q4 = rate_of_z_at_q3 + k->a3*rate_of_sin_q23;
+  const double rate_of_z_at_q6 = rate_of_z_at_q4 - k->d5*rate_of_cos_q234;
+  const double rate_of_z = rate_of_z_at_q6 - k->d6*rate_of_r32_at_q5;
+  const double r11_at_q234 = cos_q1*cos_q234;
+  const double rate_of_r11_at_q234 = rate_of_cos_q234*cos_q1 + rate_of_cos_q1*cos_q234;
+  const double rate_of_r12_at_q5 = r11_at_q234*rate_of_sin_q5 + rate_of_r11_at_q234*sin_q5
+      - rate_of_sin_q1*cos_q5 - rate_of_cos_q5*sin_q1;
+  const double rate_of_r13_at_q234 = -rate_of_sin_q234*cos_q1 - rate_of_cos_q1*sin_q234;
+  const double rate_of_r11_at_q2 = rate_of_cos_q2*cos_q1 + rate_of_cos_q1*cos_q2;
+  const double rate_of_x_at_q3 = k->a2*rate_of_r11_at_q2;
+  const double rate_of_r11_at_q23 = rate_of_cos_q23*cos_q1 + rate_of_cos_q1*cos_q23;
+  const double rate_of_x_at_q4 = rate_of_x_at_q3 + k->a3*rate_of_r11_at_q23;
+  const double rate_of_x_at_q5 = rate_of_x_at_q4 + k->d4*rate_of_sin_q1;
+  const double rate_of_x_at_q6 = rate_of_x_at_q5 - k->d5*rate_of_r13_at_q234;
+  const double rate_of_x = rate_of_x_at_q6 - k->d6*rate_of_r12_at_q5;
+  const double speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3*speed_a3;
+  const double r23_at_q234_times_speed_a5 = r23_at_q234*speed_a5;
+  const double shared_sum = r23_at_q234_times_speed_a5 + speed_a2_plus_speed_a3_plus_speed_a4*cos_q1
+      + r22_at_q5*speed_a6;
+  const double r32_at_q5 = sin_q234*sin_q5;
+  const double shared_sum_2 = speed_a5*cos_q234 + r32_at_q5*speed_a6 - speed_a1;
+  const double z_at_q3 = k->d1 + k->a2*sin_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*sin_q23;
+  const double z_at_q6 = z_at_q4 - k->d5*cos_q234;
+  const double z = z_at_q6 - k->d6*r32_at_q5;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double shared_sum_3 = (k->d1 - z)*speed_a2 + (z_at_q3 - z)*speed_a3 - speed_a4*z_minus_z_at_q4;
+  const double r13_at_q234 = -cos_q1*sin_q234;
+  const double r13_at_q234_times_speed_a5 = r13_at_q234*speed_a5;
+  const double r12_at_q5 = r11_at_q234*sin_q5 - cos_q5*sin_q1;
+  const double shared_sum_4 = r13_at_q234_times_speed_a5 + r12_at_q5*speed_a6
+      - speed_a2_plus_speed_a3_plus_speed_a4*sin_q1;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double shared_sum_5 = speed_a5
+      *(rate_of_y_at_q5*cos_q234 + rate_of_r23_at_q234*z_minus_z_at_q4 - rate_of_cos_q234*y_minus_y_at_q5)
+      + (r32_at_q5*rate_of_y_at_q6 + rate_of_r22_at_q5*z_minus_z_at_q6 - r22_at_q5*rate_of_z_at_q6
+      - rate_of_r32_at_q5*y_minus_y_at_q6)*speed_a6;
+  const double r11_at_q2 = cos_q1*cos_q2;
+  const double x_at_q3 = k->a2*r11_at_q2;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double x_at_q4 = x_at_q3 + k->a3*r11_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*sin_q1;
+  const double x_at_q6 = x_at_q5 - k->d5*r13_at_q234;
+  const double x = x_at_q6 - k->d6*r12_at_q5;
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double shared_sum_6 = speed_a5
+      *(rate_of_x_at_q5*cos_q234 + rate_of_r13_at_q234*z_minus_z_at_q4 - rate_of_cos_q234*x_minus_x_at_q5)
+      + (r32_at_q5*rate_of_x_at_q6 + rate_of_r12_at_q5*z_minus_z_at_q6 - r12_at_q5*rate_of_z_at_q6
+      - rate_of_r32_at_q5*x_minus_x_at_q6)*speed_a6;
+  const double shared_sum_7 = (rate_of_x_at_q3*speed_a3 + rate_of_x_at_q4*speed_a4)*cos_q1
+      + (rate_of_y_at_q3*speed_a3 + rate_of_y_at_q4*speed_a4)*sin_q1
+      + (r22_at_q5*rate_of_x_at_q6 + rate_of_r12_at_q5*y_minus_y_at_q6 - r12_at_q5*rate_of_y_at_q6
+      - rate_of_r22_at_q5*x_minus_x_at_q6)*speed_a6;
+  const double shared_sum_8 = ((x_at_q3 - x)*speed_a3 + (x_at_q4 - x)*speed_a4 - speed_a2*x)*rate_of_cos_q1
+      + (r23_at_q234*rate_of_x_at_q5 + rate_of_r13_at_q234*y_minus_y_at_q5 - r13_at_q234*rate_of_y_at_q5
+      - rate_of_r23_at_q234*x_minus_x_at_q5)*speed_a5;
+  accelerations[0] = speed_a3_times_rate_of_z_at_q3*cos_q1 + rate_of_cos_q1*shared_sum_3
+      + rate_of_y*shared_sum_2 + rate_of_z_at_q4*(r23_at_q234_times_speed_a5 + speed_a4*cos_q1)
+      - shared_sum_5 - rate_of_z*shared_sum;
+  accelerations[1] = shared_sum_6 + rate_of_sin_q1*shared_sum_3 + rate_of_z*shared_sum_4
+      + (speed_a4*sin_q1 - r13_at_q234_times_speed_a5)*rate_of_z_at_q4
+      + speed_a3_times_rate_of_z_at_q3*sin_q1 - rate_of_x*shared_sum_2;
+  accelerations[2] = rate_of_sin_q1*(speed_a2*y + speed_a3*(y - y_at_q3) + speed_a4*(y - y_at_q4))
+      + rate_of_x*shared_sum - shared_sum_7 - shared_sum_8 - rate_of_y*shared_sum_4;
+  accelerations[3] = rate_of_sin_q1*speed_a2_plus_speed_a3_plus_speed_a4 - rate_of_r12_at_q5*speed_a6
+      - rate_of_r13_at_q234*speed_a5;
+  accelerations[4] = -rate_of_cos_q1*speed_a2_plus_speed_a3_plus_speed_a4 - rate_of_r22_at_q5*speed_a6
+      - rate_of_r23_at_q234*speed_a5;
+  accelerations[5] = -rate_of_cos_q234*speed_a5 - rate_of_r32_at_q5*speed_a6;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -1715,6 +1853,7 @@ const softkin_mechanism ac6_threeparallel_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1758,6 +1897,18 @@ softkin_status ac6_threeparallel_branches(const ac6_threeparallel_machine *machi
 softkin_status ac6_threeparallel_jacobian(const ac6_threeparallel_machine *machine, const double *axes,
     double *rows, softkin_refusal *why) {
   return softkin_jacobian(&ac6_threeparallel_mechanism, machine, axes, rows, why);
+}
+
+softkin_status ac6_threeparallel_axis_velocities(const ac6_threeparallel_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&ac6_threeparallel_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status ac6_threeparallel_axis_accelerations(const ac6_threeparallel_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  return softkin_axis_accelerations(&ac6_threeparallel_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status ac6_threeparallel_singularity(const ac6_threeparallel_machine *machine, const double *axes,

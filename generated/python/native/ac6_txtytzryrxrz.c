@@ -423,6 +423,93 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const ac6_txtytzryrxrz_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
+      axis_a6 = axes[5], speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2],
+      speed_a4 = speeds[3], speed_a5 = speeds[4], speed_a6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6,
+      axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 12)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a3 = axis_a3 - k->offset_a3;
+  const double a4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
+  const double cos_a4 = cos(a4);
+  const double a5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
+  const double cos_a5 = cos(a5);
+  const double r33_at_a5 = cos_a4*cos_a5;
+  const double sin_a4 = sin(a4);
+  const double sin_a5 = sin(a5);
+  const double r32_at_a5 = cos_a4*sin_a5;
+  const double a6 = SOFTKIN_DEGREE*(axis_a6 - k->offset_a6);
+  const double sin_a6 = sin(a6);
+  const double cos_a6 = cos(a6);
+  const double r31_at_a6 = r32_at_a5*sin_a6 - cos_a6*sin_a4;
+  const double r32_at_a6 = r32_at_a5*cos_a6 + sin_a4*sin_a6;
+  const double z = a3 + k->flange_x*r31_at_a6 + k->flange_y*r32_at_a6 + k->flange_z*r33_at_a5;
+  const double z_minus_a3 = z - a3;
+  const double a2 = axis_a2 - k->offset_a2;
+  const double r21_at_a6 = cos_a5*sin_a6;
+  const double r22_at_a6 = cos_a5*cos_a6;
+  const double y = a2 + k->flange_x*r21_at_a6 + k->flange_y*r22_at_a6 - k->flange_z*sin_a5;
+  const double y_minus_a2 = y - a2;
+  const double a1 = axis_a1 - k->offset_a1;
+  const double r13_at_a5 = cos_a5*sin_a4;
+  const double r12_at_a5 = sin_a4*sin_a5;
+  const double r11_at_a6 = cos_a4*cos_a6 + r12_at_a5*sin_a6;
+  const double r12_at_a6 = r12_at_a5*cos_a6 - cos_a4*sin_a6;
+  const double x = a1 + k->flange_x*r11_at_a6 + k->flange_y*r12_at_a6 + k->flange_z*r13_at_a5;
+  const double x_minus_a1 = x - a1;
+  const double shared_sum = speed_a5*sin_a4 - r33_at_a5*speed_a6;
+  const double speed_a4_minus_sin_a5_times_speed_a6 = speed_a4 - speed_a6*sin_a5;
+  const double shared_sum_2 = speed_a5*cos_a4 + r13_at_a5*speed_a6;
+  const double rate_of_cos_a4 = -speed_a4*sin_a4;
+  const double rate_of_cos_a5 = -speed_a5*sin_a5;
+  const double rate_of_sin_a4 = speed_a4*cos_a4;
+  const double rate_of_r13_at_a5 = rate_of_sin_a4*cos_a5 + rate_of_cos_a5*sin_a4;
+  const double shared_sum_3 = rate_of_cos_a4*speed_a5 + rate_of_r13_at_a5*speed_a6;
+  const double rate_of_sin_a5 = speed_a5*cos_a5;
+  const double rate_of_sin_a5_times_speed_a6 = rate_of_sin_a5*speed_a6;
+  const double rate_of_r33_at_a5 = rate_of_cos_a5*cos_a4 + rate_of_cos_a4*cos_a5;
+  const double shared_sum_4 = rate_of_r33_at_a5*speed_a6 - rate_of_sin_a4*speed_a5;
+  const double rate_of_sin_a6 = speed_a6*cos_a6;
+  const double rate_of_r21_at_a6 = rate_of_sin_a6*cos_a5 + rate_of_cos_a5*sin_a6;
+  const double rate_of_cos_a6 = -speed_a6*sin_a6;
+  const double rate_of_r22_at_a6 = rate_of_cos_a6*cos_a5 + rate_of_cos_a5*cos_a6;
+  const double rate_of_y = speed_a2 + k->flange_x*rate_of_r21_at_a6 + k->flange_y*rate_of_r22_at_a6
+      - k->flange_z*rate_of_sin_a5;
+  const double rate_of_y_minus_speed_a2 = rate_of_y - speed_a2;
+  const double rate_of_r32_at_a5 = rate_of_sin_a5*cos_a4 + rate_of_cos_a4*sin_a5;
+  const double rate_of_r31_at_a6 = r32_at_a5*rate_of_sin_a6 + rate_of_r32_at_a5*sin_a6
+      - rate_of_sin_a4*cos_a6 - rate_of_cos_a6*sin_a4;
+  const double rate_of_r32_at_a6 = rate_of_r32_at_a5*cos_a6 + r32_at_a5*rate_of_cos_a6
+      + rate_of_sin_a4*sin_a6 + rate_of_sin_a6*sin_a4;
+  const double rate_of_z = speed_a3 + k->flange_x*rate_of_r31_at_a6 + k->flange_y*rate_of_r32_at_a6
+      + k->flange_z*rate_of_r33_at_a5;
+  const double rate_of_z_minus_speed_a3 = rate_of_z - speed_a3;
+  const double rate_of_r12_at_a5 = rate_of_sin_a4*sin_a5 + rate_of_sin_a5*sin_a4;
+  const double rate_of_r11_at_a6 = rate_of_cos_a6*cos_a4 + rate_of_cos_a4*cos_a6 + r12_at_a5*rate_of_sin_a6
+      + rate_of_r12_at_a5*sin_a6;
+  const double rate_of_r12_at_a6 = rate_of_r12_at_a5*cos_a6 + r12_at_a5*rate_of_cos_a6
+      - rate_of_sin_a6*cos_a4 - rate_of_cos_a4*sin_a6;
+  const double rate_of_x = speed_a1 + k->flange_x*rate_of_r11_at_a6 + k->flange_y*rate_of_r12_at_a6
+      + k->flange_z*rate_of_r13_at_a5;
+  const double rate_of_x_minus_speed_a1 = rate_of_x - speed_a1;
+  accelerations[0] = rate_of_y_minus_speed_a2*shared_sum
+      + rate_of_z_minus_speed_a3*speed_a4_minus_sin_a5_times_speed_a6
+      - rate_of_sin_a5_times_speed_a6*z_minus_a3 - shared_sum_4*y_minus_a2;
+  accelerations[1] = shared_sum_4*x_minus_a1 - rate_of_x_minus_speed_a1*shared_sum
+      - rate_of_z_minus_speed_a3*shared_sum_2 - shared_sum_3*z_minus_a3;
+  accelerations[2] = rate_of_sin_a5_times_speed_a6*x_minus_a1 + rate_of_y_minus_speed_a2*shared_sum_2
+      + shared_sum_3*y_minus_a2 - rate_of_x_minus_speed_a1*speed_a4_minus_sin_a5_times_speed_a6;
+  accelerations[3] = shared_sum_3;
+  accelerations[4] = -rate_of_sin_a5_times_speed_a6;
+  accelerations[5] = shared_sum_4;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -610,6 +697,7 @@ const softkin_mechanism ac6_txtytzryrxrz_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -652,6 +740,18 @@ softkin_status ac6_txtytzryrxrz_branches(const ac6_txtytzryrxrz_machine *machine
 softkin_status ac6_txtytzryrxrz_jacobian(const ac6_txtytzryrxrz_machine *machine, const double *axes,
     double *rows, softkin_refusal *why) {
   return softkin_jacobian(&ac6_txtytzryrxrz_mechanism, machine, axes, rows, why);
+}
+
+softkin_status ac6_txtytzryrxrz_axis_velocities(const ac6_txtytzryrxrz_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&ac6_txtytzryrxrz_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status ac6_txtytzryrxrz_axis_accelerations(const ac6_txtytzryrxrz_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  return softkin_axis_accelerations(&ac6_txtytzryrxrz_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status ac6_txtytzryrxrz_singularity(const ac6_txtytzryrxrz_machine *machine, const double *axes,

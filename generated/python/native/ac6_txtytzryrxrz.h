@@ -156,6 +156,16 @@ softkin_status ac6_txtytzryrxrz_branches(const ac6_txtytzryrxrz_machine *machine
 softkin_status ac6_txtytzryrxrz_jacobian(const ac6_txtytzryrxrz_machine *machine, const double *axes,
     double *rows, softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 6 numbers, rows as in the Jacobian. */
+softkin_status ac6_txtytzryrxrz_axis_velocities(const ac6_txtytzryrxrz_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 6 numbers, at the velocities that the axes have.
+ * */
+softkin_status ac6_txtytzryrxrz_axis_accelerations(const ac6_txtytzryrxrz_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status ac6_txtytzryrxrz_singularity(const ac6_txtytzryrxrz_machine *machine, const double *axes,
     double *margins, bool *is_singular, softkin_refusal *why);

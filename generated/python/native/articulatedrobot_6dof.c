@@ -1150,6 +1150,151 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const articulatedrobot_6dof_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
+      axis_a6 = axes[5], speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2],
+      speed_a4 = speeds[3], speed_a5 = speeds[4], speed_a6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6,
+      axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6}, 12)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double q1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double sin_q1 = sin(q1);
+  const double cos_q1 = cos(q1);
+  const double rate_of_sin_q1 = speed_a1*cos_q1;
+  const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double sin_q23 = sin(q2_plus_q3);
+  const double speed_a2_plus_speed_a3 = speed_a2 + speed_a3;
+  const double rate_of_cos_q23 = -speed_a2_plus_speed_a3*sin_q23;
+  const double rate_of_r21_at_q23 = rate_of_sin_q1*cos_q23 + rate_of_cos_q23*sin_q1;
+  const double rate_of_cos_q1 = -speed_a1*sin_q1;
+  const double rate_of_sin_q23 = speed_a2_plus_speed_a3*cos_q23;
+  const double rate_of_y_at_q2 = k->a1*rate_of_sin_q1;
+  const double sin_q2 = sin(q2);
+  const double cos_q2 = cos(q2);
+  const double rate_of_sin_q2 = speed_a2*cos_q2;
+  const double rate_of_r23_at_q2 = -rate_of_sin_q1*sin_q2 - rate_of_sin_q2*sin_q1;
+  const double rate_of_y_at_q3 = rate_of_y_at_q2 + k->a2*rate_of_r23_at_q2;
+  const double rate_of_r23_at_q23 = -rate_of_sin_q1*sin_q23 - rate_of_sin_q23*sin_q1;
+  const double rate_of_y_at_q4 = rate_of_y_at_q3 + k->a3*rate_of_r23_at_q23 - k->d3*rate_of_cos_q1;
+  const double rate_of_y_at_q5 = rate_of_y_at_q4 + k->d4*rate_of_r21_at_q23;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double q4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double q5 = SOFTKIN_DEGREE*(axis_a5 - k->offset_a5);
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double rate_of_sin_q4 = speed_a4*cos_q4;
+  const double rate_of_cos_q4 = -speed_a4*sin_q4;
+  const double rate_of_r23_at_q4 = rate_of_r23_at_q23*cos_q4 + r23_at_q23*rate_of_cos_q4
+      - rate_of_sin_q4*cos_q1 - rate_of_cos_q1*sin_q4;
+  const double rate_of_sin_q5 = speed_a5*cos_q5;
+  const double rate_of_cos_q5 = -speed_a5*sin_q5;
+  const double rate_of_r21_at_q5 = rate_of_r21_at_q23*cos_q5 + r21_at_q23*rate_of_cos_q5
+      - r23_at_q4*rate_of_sin_q5 - rate_of_r23_at_q4*sin_q5;
+  const double rate_of_y = rate_of_y_at_q5 + k->d6*rate_of_r21_at_q5;
+  const double rate_of_cos_q2 = -speed_a2*sin_q2;
+  const double rate_of_z_at_q3 = k->a2*rate_of_cos_q2;
+  const double rate_of_z_at_q4 = rate_of_z_at_q3 + k->a3*rate_of_cos_q23;
+  const double rate_of_z_at_q5 = rate_of_z_at_q4 + k->d4*rate_of_sin_q23;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double rate_of_r33_at_q4 = rate_of_cos_q4*cos_q23 + rate_of_cos_q23*cos_q4;
+  const double rate_of_r31_at_q5 = rate_of_sin_q23*cos_q5 + rate_of_cos_q5*sin_q23 - r33_at_q4*rate_of_sin_q5
+      - rate_of_r33_at_q4*sin_q5;
+  const double rate_of_z = rate_of_z_at_q5 + k->d6*rate_of_r31_at_q5;
+  const double rate_of_r11_at_q23 = rate_of_cos_q23*cos_q1 + rate_of_cos_q1*cos_q23;
+  const double rate_of_x_at_q2 = k->a1*rate_of_cos_q1;
+  const double rate_of_r13_at_q2 = -rate_of_sin_q2*cos_q1 - rate_of_cos_q1*sin_q2;
+  const double rate_of_x_at_q3 = rate_of_x_at_q2 + k->a2*rate_of_r13_at_q2;
+  const double rate_of_r13_at_q23 = -rate_of_sin_q23*cos_q1 - rate_of_cos_q1*sin_q23;
+  const double rate_of_x_at_q4 = rate_of_x_at_q3 + k->a3*rate_of_r13_at_q23 + k->d3*rate_of_sin_q1;
+  const double rate_of_x_at_q5 = rate_of_x_at_q4 + k->d4*rate_of_r11_at_q23;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double r13_at_q23 = -cos_q1*sin_q23;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double rate_of_r13_at_q4 = rate_of_r13_at_q23*cos_q4 + r13_at_q23*rate_of_cos_q4
+      + rate_of_sin_q1*sin_q4 + rate_of_sin_q4*sin_q1;
+  const double rate_of_r11_at_q5 = rate_of_r11_at_q23*cos_q5 + r11_at_q23*rate_of_cos_q5
+      - r13_at_q4*rate_of_sin_q5 - rate_of_r13_at_q4*sin_q5;
+  const double rate_of_x = rate_of_x_at_q5 + k->d6*rate_of_r11_at_q5;
+  const double r31_at_q5 = cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double shared_sum_2 = r31_at_q5*speed_a6 + r32_at_q4*speed_a5;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double shared_sum_3 = r21_at_q5*speed_a6 + r22_at_q4*speed_a5;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double shared_sum_4 = r11_at_q5*speed_a6 + r12_at_q4*speed_a5;
+  const double rate_of_r22_at_q4 = rate_of_cos_q4*cos_q1 + rate_of_cos_q1*cos_q4 + r23_at_q23*rate_of_sin_q4
+      + rate_of_r23_at_q23*sin_q4;
+  const double shared_sum_5 = rate_of_r21_at_q5*speed_a6 + rate_of_r22_at_q4*speed_a5;
+  const double rate_of_r32_at_q4 = rate_of_sin_q4*cos_q23 + rate_of_cos_q23*sin_q4;
+  const double shared_sum_6 = rate_of_r31_at_q5*speed_a6 + rate_of_r32_at_q4*speed_a5;
+  const double rate_of_r12_at_q4 = r13_at_q23*rate_of_sin_q4 + rate_of_r13_at_q23*sin_q4
+      - rate_of_sin_q1*cos_q4 - rate_of_cos_q4*sin_q1;
+  const double shared_sum_7 = rate_of_r11_at_q5*speed_a6 + rate_of_r12_at_q4*speed_a5;
+  const double speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3*speed_a3;
+  const double shared_sum_8 = shared_sum_3 + r21_at_q23*speed_a4 - speed_a2_plus_speed_a3*cos_q1;
+  const double shared_sum_9 = shared_sum_2 + speed_a1 + speed_a4*sin_q23;
+  const double shared_sum_10 = shared_sum_4 + r11_at_q23*speed_a4 + speed_a2_plus_speed_a3*sin_q1;
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 + k->d4*sin_q23;
+  const double z = z_at_q5 + k->d6*r31_at_q5;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23 - k->d3*cos_q1;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double y = y_at_q5 + k->d6*r21_at_q5;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double shared_sum = (k->d1 - z)*speed_a2 + (z_at_q3 - z)*speed_a3;
+  const double shared_sum_11 = rate_of_cos_q1*shared_sum + shared_sum_5*z_minus_z_at_q5
+      + (rate_of_r21_at_q23*z_minus_z_at_q4 + rate_of_y_at_q4*sin_q23 - r21_at_q23*rate_of_z_at_q4
+      - rate_of_sin_q23*y_minus_y_at_q4)*speed_a4 - shared_sum_6*y_minus_y_at_q5;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double x = x_at_q5 + k->d6*r11_at_q5;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double shared_sum_12 = rate_of_sin_q1*shared_sum + shared_sum_6*x_minus_x_at_q5
+      + (r11_at_q23*rate_of_z_at_q4 + rate_of_sin_q23*x_minus_x_at_q4 - rate_of_r11_at_q23*z_minus_z_at_q4
+      - rate_of_x_at_q4*sin_q23)*speed_a4 - shared_sum_7*z_minus_z_at_q5;
+  const double shared_sum_14 = (rate_of_x_at_q2*speed_a2 + rate_of_x_at_q3*speed_a3)*cos_q1
+      + shared_sum_5*x_minus_x_at_q5 + (rate_of_y_at_q2*speed_a2 + rate_of_y_at_q3*speed_a3)*sin_q1
+      - shared_sum_7*y_minus_y_at_q5;
+  const double shared_sum_13 = rate_of_cos_q1*((x_at_q2 - x)*speed_a2 + (x_at_q3 - x)*speed_a3)
+      + (r11_at_q23*rate_of_y_at_q4 + rate_of_r21_at_q23*x_minus_x_at_q4 - r21_at_q23*rate_of_x_at_q4
+      - rate_of_r11_at_q23*y_minus_y_at_q4)*speed_a4
+      - rate_of_sin_q1*(speed_a2*(y - y_at_q2) + speed_a3*(y - y_at_q3));
+  accelerations[0] = shared_sum_11 + speed_a3_times_rate_of_z_at_q3*cos_q1 + rate_of_y_at_q5*shared_sum_2
+      + rate_of_z*shared_sum_8 - rate_of_y*shared_sum_9 - rate_of_z_at_q5*shared_sum_3;
+  accelerations[1] = shared_sum_12 + rate_of_x*shared_sum_9 + rate_of_z_at_q5*shared_sum_4
+      + speed_a3_times_rate_of_z_at_q3*sin_q1 - rate_of_x_at_q5*shared_sum_2 - rate_of_z*shared_sum_10;
+  accelerations[2] = rate_of_x_at_q5*shared_sum_3 + rate_of_y*shared_sum_10 - shared_sum_13 - shared_sum_14
+      - rate_of_x*shared_sum_8 - rate_of_y_at_q5*shared_sum_4;
+  accelerations[3] = shared_sum_7 + rate_of_r11_at_q23*speed_a4 + rate_of_sin_q1*speed_a2_plus_speed_a3;
+  accelerations[4] = shared_sum_5 + rate_of_r21_at_q23*speed_a4 - rate_of_cos_q1*speed_a2_plus_speed_a3;
+  accelerations[5] = shared_sum_6 + rate_of_sin_q23*speed_a4;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -1891,6 +2036,7 @@ const softkin_mechanism articulatedrobot_6dof_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1937,6 +2083,18 @@ softkin_status articulatedrobot_6dof_branches(const articulatedrobot_6dof_machin
 softkin_status articulatedrobot_6dof_jacobian(const articulatedrobot_6dof_machine *machine,
     const double *axes, double *rows, softkin_refusal *why) {
   return softkin_jacobian(&articulatedrobot_6dof_mechanism, machine, axes, rows, why);
+}
+
+softkin_status articulatedrobot_6dof_axis_velocities(const articulatedrobot_6dof_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&articulatedrobot_6dof_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status articulatedrobot_6dof_axis_accelerations(const articulatedrobot_6dof_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  return softkin_axis_accelerations(&articulatedrobot_6dof_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status articulatedrobot_6dof_singularity(const articulatedrobot_6dof_machine *machine,

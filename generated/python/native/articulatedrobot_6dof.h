@@ -172,6 +172,16 @@ softkin_status articulatedrobot_6dof_branches(const articulatedrobot_6dof_machin
 softkin_status articulatedrobot_6dof_jacobian(const articulatedrobot_6dof_machine *machine,
     const double *axes, double *rows, softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 6 numbers, rows as in the Jacobian. */
+softkin_status articulatedrobot_6dof_axis_velocities(const articulatedrobot_6dof_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 6 numbers, at the velocities that the axes have.
+ * */
+softkin_status articulatedrobot_6dof_axis_accelerations(const articulatedrobot_6dof_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
+
 /** 3 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status articulatedrobot_6dof_singularity(const articulatedrobot_6dof_machine *machine,
     const double *axes, double *margins, bool *is_singular, softkin_refusal *why);

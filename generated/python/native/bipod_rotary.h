@@ -76,7 +76,7 @@ typedef struct {
       outer_arm_squared_times_rounding, machine_scale_times_plane, inner_arm_times_shortest_link,
       inner_arm_minus_outer_arm, machine_scale_squared_times_free_angle, displacement_minus_tcp_displacement,
       one_by_outer_arm, inner_arm_plus_outer_arm, assembly_sign_by_outer_arm_squared,
-      one_by_outer_arm_squared, twice_inner_arm, sum_in_slope_1_by_x;
+      one_by_outer_arm_squared, twice_inner_arm, sum_in_slope_1_by_x, inner_arm_squared_times_2;
   bool single_a1, single_a2;
 } bipod_rotary_machine;
 
@@ -138,6 +138,15 @@ softkin_status bipod_rotary_branches(const bipod_rotary_machine *machine, const 
 /** The Jacobian, per radian: 2 rows of 2. */
 softkin_status bipod_rotary_jacobian(const bipod_rotary_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 2 numbers, rows as in the Jacobian. */
+softkin_status bipod_rotary_axis_velocities(const bipod_rotary_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 2 numbers, at the velocities that the axes have.
+ * */
+softkin_status bipod_rotary_axis_accelerations(const bipod_rotary_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 3 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status bipod_rotary_singularity(const bipod_rotary_machine *machine, const double *axes,

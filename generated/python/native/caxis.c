@@ -156,6 +156,18 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_c = axes[0], speed_c = speeds[0];
+  if (!softkin_are_reasonable((const double[]){speed_c, axis_c}, 2)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const caxis_parameters *p = parameters;
@@ -206,6 +218,7 @@ const softkin_mechanism caxis_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void caxis_defaults(caxis_parameters *parameters) {
@@ -246,6 +259,17 @@ softkin_status caxis_branches(const caxis_machine *machine, const softkin_frame 
 softkin_status caxis_jacobian(const caxis_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&caxis_mechanism, machine, axes, rows, why);
+}
+
+softkin_status caxis_axis_velocities(const caxis_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&caxis_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status caxis_axis_accelerations(const caxis_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&caxis_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status caxis_singularity(const caxis_machine *machine, const double *axes, double *margins,

@@ -111,6 +111,15 @@ softkin_status caxis_branches(const caxis_machine *machine, const softkin_frame 
 softkin_status caxis_jacobian(const caxis_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 1 numbers, rows as in the Jacobian. */
+softkin_status caxis_axis_velocities(const caxis_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 1 numbers, at the velocities that the axes have.
+ * */
+softkin_status caxis_axis_accelerations(const caxis_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 0 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status caxis_singularity(const caxis_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

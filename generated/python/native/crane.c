@@ -294,6 +294,52 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const crane_machine *k = machine;
+  const double axis_r = axes[0], axis_theta = axes[1], axis_phi = axes[2], speed_r = speeds[0],
+      speed_theta = speeds[1], speed_phi = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_phi, speed_r, speed_theta, axis_phi, axis_r,
+      axis_theta}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double r = axis_r - k->offset_r;
+  /* R where the machine has no pose */
+  if (!(r >= -1e-9 && r <= 1000000001.0)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "R where the machine has no pose", "", 0.0, 0);
+  }
+  const double axis_phi_minus_offset_phi = axis_phi - k->offset_phi;
+  /* Phi where the machine has no pose */
+  if (!(axis_phi_minus_offset_phi >= -1e-9 && axis_phi_minus_offset_phi <= 180.000000181)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "Phi where the machine has no pose", "", 0.0, 0);
+  }
+  const double theta = SOFTKIN_DEGREE*(axis_theta - k->offset_theta);
+  const double cos_theta = cos(theta);
+  const double sin_theta = sin(theta);
+  const double rate_of_cos_theta = -speed_theta*sin_theta;
+  const double phi = SOFTKIN_DEGREE*axis_phi_minus_offset_phi;
+  const double cos_phi = cos(phi);
+  const double rate_of_sin_phi = speed_phi*cos_phi;
+  const double rate_of_sin_theta = speed_theta*cos_theta;
+  const double sin_phi = sin(phi);
+  const double rate_of_cos_phi = -speed_phi*sin_phi;
+  const double shared_sum = r*rate_of_sin_phi + speed_r*sin_phi;
+  const double sin_phi_times_speed_theta = speed_theta*sin_phi;
+  const double r_times_speed_theta = r*speed_theta;
+  const double speed_phi_times_rate_of_cos_phi = rate_of_cos_phi*speed_phi;
+  accelerations[0] = r*(speed_phi_times_rate_of_cos_phi*cos_theta
+      - rate_of_sin_theta*sin_phi_times_speed_theta) + rate_of_cos_theta*shared_sum
+      + rate_of_sin_phi*(speed_r*cos_theta - r_times_speed_theta*sin_theta)
+      + speed_r*(rate_of_sin_phi*cos_theta - sin_phi_times_speed_theta*sin_theta);
+  accelerations[1] = r*(rate_of_cos_theta*sin_phi_times_speed_theta
+      + speed_phi_times_rate_of_cos_phi*sin_theta)
+      + rate_of_sin_phi*(r_times_speed_theta*cos_theta + speed_r*sin_theta) + rate_of_sin_theta*shared_sum
+      + speed_r*(cos_theta*sin_phi_times_speed_theta + rate_of_sin_phi*sin_theta);
+  accelerations[2] = rate_of_cos_phi*speed_r - shared_sum*speed_phi;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const crane_parameters *p = parameters;
@@ -368,6 +414,7 @@ const softkin_mechanism crane_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void crane_defaults(crane_parameters *parameters) {
@@ -408,6 +455,17 @@ softkin_status crane_branches(const crane_machine *machine, const softkin_frame 
 softkin_status crane_jacobian(const crane_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&crane_mechanism, machine, axes, rows, why);
+}
+
+softkin_status crane_axis_velocities(const crane_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&crane_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status crane_axis_accelerations(const crane_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&crane_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status crane_singularity(const crane_machine *machine, const double *axes, double *margins,

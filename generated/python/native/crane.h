@@ -132,6 +132,15 @@ softkin_status crane_branches(const crane_machine *machine, const softkin_frame 
 softkin_status crane_jacobian(const crane_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status crane_axis_velocities(const crane_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status crane_axis_accelerations(const crane_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 2 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status crane_singularity(const crane_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

@@ -729,6 +729,225 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const delta_c_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3],
+      speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2], speed_a4 = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2,
+      axis_a3, axis_a4}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double cos_a2 = cos(a2);
+  const double pivot_2_y = k->sum_in_pivot_2_y + k->arm_length_times_root_of_3_times_half*cos_a2;
+  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double cos_a3 = cos(a3);
+  const double pivot_3_y = -k->sum_in_pivot_2_y - k->arm_length_times_root_of_3_times_half*cos_a3;
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double sin_a1 = sin(a1);
+  const double pivot_1_z = -k->arm_length*sin_a1;
+  const double sin_a2 = sin(a2);
+  const double pivot_2_z = -k->arm_length*sin_a2;
+  const double centre_1_to_2_z = pivot_2_z - pivot_1_z;
+  const double sin_a3 = sin(a3);
+  const double pivot_3_z = -k->arm_length*sin_a3;
+  const double centre_1_to_3_z = pivot_3_z - pivot_1_z;
+  /* normal to the plane of the centres */
+  const double normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y;
+  const double cos_a1 = cos(a1);
+  /* rod 1: centre about which it swings */
+  const double pivot_1_x = k->base_radius_minus_plate_radius + k->arm_length*cos_a1;
+  /* rod 2: centre about which it swings */
+  const double pivot_2_x = k->half_plate_radius_minus_half_base_radius - k->half_arm_length*cos_a2;
+  const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
+  /* rod 3: centre about which it swings */
+  const double pivot_3_x = k->half_plate_radius_minus_half_base_radius - k->half_arm_length*cos_a3;
+  const double centre_1_to_3_x = pivot_3_x - pivot_1_x; /* vector from centre 1 to centre 3 */
+  const double normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z;
+  const double normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y;
+  /* squared length of the normal */
+  const double normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z;
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  /* trilateration: the foot projected on the vector to centre 2, times its length */
+  const double projection_2 = 0.5
+      *(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y);
+  /* trilateration: the foot projected on the vector to centre 3, times its length */
+  const double projection_3 = 0.5
+      *(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y);
+  const double one_by_normal_square = 1.0/normal_square;
+  /* foot of the perpendicular, seen from centre 1 */
+  const double foot_x = one_by_normal_square
+      *((normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+      + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3);
+  const double foot_y = one_by_normal_square
+      *((centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+      + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3);
+  const double foot_z = one_by_normal_square
+      *((centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+      + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3);
+  /* square of the height over the plane of the centres */
+  const double height_square = k->rod_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z;
+  /* the rods do not meet */
+  if (!(height_square >= -k->rod_length_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
+  const double x = foot_x + pivot_1_x + height_by_normal*normal_x;
+  const double twice_x = 2.0*x;
+  const double slope_1_by_x = twice_x - k->sum_in_slope_1_by_x - k->twice_arm_length*cos_a1;
+  const double y = foot_y + height_by_normal*normal_y;
+  const double slope_1_by_y = 2.0*y;
+  const double z = foot_z + pivot_1_z + height_by_normal*normal_z;
+  const double twice_z = 2.0*z;
+  const double slope_1_by_z = twice_z + k->twice_arm_length*sin_a1;
+  const double arm_length_times_cos_a2 = k->arm_length*cos_a2;
+  const double product_in_slope_2_by_y = (k->plate_radius - arm_length_times_cos_a2 - k->base_radius)
+      *k->root_of_3;
+  const double slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y;
+  const double slope_2_by_z = twice_z + k->twice_arm_length*sin_a2;
+  const double arm_length_times_cos_a3 = k->arm_length*cos_a3;
+  const double product_in_slope_3_by_y = (k->plate_radius - arm_length_times_cos_a3 - k->base_radius)
+      *k->root_of_3;
+  const double slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y;
+  const double slope_3_by_z = twice_z + k->twice_arm_length*sin_a3;
+  const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
+  const double sum_in_slope_2_by_x = k->base_radius_minus_plate_radius + twice_x;
+  const double slope_2_by_x = arm_length_times_cos_a2 + sum_in_slope_2_by_x;
+  const double slope_3_by_x = arm_length_times_cos_a3 + sum_in_slope_2_by_x;
+  const double sum_in_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z;
+  const double sum_in_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x*sum_in_determinant + slope_1_by_y*sum_in_determinant_2
+      + slope_1_by_z*sum_in_determinant_3;
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > k->product_in_determinant_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double sum_in_velocity_y = slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z;
+  const double sum_in_velocity_y_2 = slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x;
+  const double one_by_determinant_divisor = 1.0/determinant;
+  const double cos_a3_times_twice_arm_length = k->twice_arm_length*cos_a3;
+  const double z_minus_pivot_3_z = z - pivot_3_z;
+  const double sum_in_slope_3_by_a3 = k->arm_length*(pivot_3_x - x)
+      + k->arm_length_times_root_of_3*(0.5*product_in_slope_3_by_y - y);
+  const double slope_3_by_a3 = z_minus_pivot_3_z*cos_a3_times_twice_arm_length + sum_in_slope_3_by_a3*sin_a3;
+  const double speed_a3_times_slope_3_by_a3 = slope_3_by_a3*speed_a3;
+  const double cos_a2_times_twice_arm_length = k->twice_arm_length*cos_a2;
+  const double z_minus_pivot_2_z = z - pivot_2_z;
+  const double sum_in_slope_2_by_a2 = k->arm_length*(pivot_2_x - x)
+      + k->arm_length_times_root_of_3*(0.5*product_in_slope_2_by_y + y);
+  const double slope_2_by_a2 = z_minus_pivot_2_z*cos_a2_times_twice_arm_length + sum_in_slope_2_by_a2*sin_a2;
+  const double speed_a2_times_slope_2_by_a2 = slope_2_by_a2*speed_a2;
+  const double x_minus_pivot_1_x = x - pivot_1_x;
+  const double z_minus_pivot_1_z = z - pivot_1_z;
+  const double slope_1_by_a1 = k->twice_arm_length*(z_minus_pivot_1_z*cos_a1 + x_minus_pivot_1_x*sin_a1);
+  const double speed_a1_times_slope_1_by_a1 = slope_1_by_a1*speed_a1;
+  const double velocity_y = (speed_a2_times_slope_2_by_a2*sum_in_velocity_y
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_y_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant_2)
+      *one_by_determinant_divisor;
+  const double rate_of_slope_1_by_y = 2.0*velocity_y;
+  const double sum_in_velocity_z = slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x;
+  const double sum_in_velocity_z_2 = slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y;
+  const double velocity_z = (speed_a2_times_slope_2_by_a2*sum_in_velocity_z
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_z_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant_3)
+      *one_by_determinant_divisor;
+  const double sum_in_velocity_x = slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y;
+  const double sum_in_velocity_x_2 = slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z;
+  const double velocity_x = (speed_a2_times_slope_2_by_a2*sum_in_velocity_x
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_x_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant)
+      *one_by_determinant_divisor;
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double twice_velocity_x = 2.0*velocity_x;
+  const double rate_of_slope_1_by_x = twice_velocity_x - rate_of_cos_a1*k->twice_arm_length;
+  const double rate_of_cos_a3 = -speed_a3*sin_a3;
+  const double rate_of_slope_3_by_y = rate_of_slope_1_by_y + k->arm_length_times_root_of_3*rate_of_cos_a3;
+  const double twice_velocity_z = 2.0*velocity_z;
+  const double rate_of_sin_a3 = speed_a3*cos_a3;
+  const double rate_of_slope_3_by_z = twice_velocity_z + rate_of_sin_a3*k->twice_arm_length;
+  const double rate_of_slope_3_by_x = twice_velocity_x + k->arm_length*rate_of_cos_a3;
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double rate_of_slope_1_by_z = twice_velocity_z + rate_of_sin_a1*k->twice_arm_length;
+  const double rate_of_cos_a2 = -speed_a2*sin_a2;
+  const double rate_of_slope_2_by_y = rate_of_slope_1_by_y - k->arm_length_times_root_of_3*rate_of_cos_a2;
+  const double rate_of_sin_a2 = speed_a2*cos_a2;
+  const double rate_of_slope_2_by_z = twice_velocity_z + rate_of_sin_a2*k->twice_arm_length;
+  const double rate_of_slope_2_by_x = twice_velocity_x + k->arm_length*rate_of_cos_a2;
+  const double sum_in_rate_of_determinant = rate_of_slope_1_by_x*sum_in_determinant
+      + rate_of_slope_1_by_y*sum_in_determinant_2 + rate_of_slope_1_by_z*sum_in_determinant_3
+      - rate_of_slope_2_by_x*sum_in_velocity_x - rate_of_slope_2_by_y*sum_in_velocity_y
+      - rate_of_slope_2_by_z*sum_in_velocity_z;
+  const double rate_of_determinant = sum_in_rate_of_determinant - rate_of_slope_3_by_x*sum_in_velocity_x_2
+      - rate_of_slope_3_by_y*sum_in_velocity_y_2 - rate_of_slope_3_by_z*sum_in_velocity_z_2;
+  const double shared_product_5 = one_by_determinant_divisor
+      *(slope_2_by_y*speed_a3_times_slope_3_by_a3 - slope_3_by_y*speed_a2_times_slope_2_by_a2);
+  const double shared_product_6 = one_by_determinant_divisor
+      *(slope_2_by_z*speed_a3_times_slope_3_by_a3 - slope_3_by_z*speed_a2_times_slope_2_by_a2);
+  const double product_in_rate_of_slope_2_by_a2_2 = k->arm_length_times_root_of_3*velocity_y;
+  const double arm_length_times_velocity_x = k->arm_length*velocity_x;
+  const double rate_of_slope_3_by_a3 = velocity_z*cos_a3_times_twice_arm_length
+      + (k->twice_arm_length*z_minus_pivot_3_z - k->product_in_rate_of_slope_2_by_a2*sin_a3)*rate_of_cos_a3
+      + (sum_in_slope_3_by_a3 + k->arm_length_squared_times_2*cos_a3)*rate_of_sin_a3
+      + (-arm_length_times_velocity_x - product_in_rate_of_slope_2_by_a2_2)*sin_a3;
+  const double speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3*speed_a3;
+  const double rate_of_slope_2_by_a2 = velocity_z*cos_a2_times_twice_arm_length
+      + (k->twice_arm_length*z_minus_pivot_2_z - k->product_in_rate_of_slope_2_by_a2*sin_a2)*rate_of_cos_a2
+      + (sum_in_slope_2_by_a2 + k->arm_length_squared_times_2*cos_a2)*rate_of_sin_a2
+      + (product_in_rate_of_slope_2_by_a2_2 - arm_length_times_velocity_x)*sin_a2;
+  const double speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2*speed_a2;
+  const double rate_of_slope_1_by_a1 = (k->twice_arm_length*z_minus_pivot_1_z
+      - k->arm_length_squared_times_2*sin_a1)*rate_of_cos_a1
+      + (k->arm_length_squared_times_2*cos_a1 + k->twice_arm_length*x_minus_pivot_1_x)*rate_of_sin_a1
+      + k->twice_arm_length*(velocity_z*cos_a1 + velocity_x*sin_a1);
+  const double speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1*speed_a1;
+  const double shared_product_10 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_x
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_x_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant)*one_by_determinant_divisor;
+  const double shared_product_11 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_y
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_y_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant_2)*one_by_determinant_divisor;
+  const double shared_product_12 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_z
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_z_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant_3)*one_by_determinant_divisor;
+  const double shared_product = one_by_determinant_divisor
+      *(slope_1_by_y*speed_a2_times_slope_2_by_a2 - slope_2_by_y*speed_a1_times_slope_1_by_a1);
+  const double shared_product_2 = one_by_determinant_divisor
+      *(slope_1_by_z*speed_a2_times_slope_2_by_a2 - slope_2_by_z*speed_a1_times_slope_1_by_a1);
+  const double shared_product_3 = (slope_3_by_y*speed_a1_times_slope_1_by_a1
+      - slope_1_by_y*speed_a3_times_slope_3_by_a3)*one_by_determinant_divisor;
+  const double shared_product_4 = one_by_determinant_divisor
+      *(slope_1_by_z*speed_a3_times_slope_3_by_a3 - slope_3_by_z*speed_a1_times_slope_1_by_a1);
+  const double shared_sum = rate_of_slope_1_by_z*shared_product_5 + rate_of_slope_2_by_y*shared_product_4
+      + rate_of_slope_2_by_z*shared_product_3 + rate_of_slope_3_by_z*shared_product
+      - rate_of_slope_3_by_y*shared_product_2;
+  const double shared_product_7 = (slope_2_by_x*speed_a1_times_slope_1_by_a1
+      - slope_1_by_x*speed_a2_times_slope_2_by_a2)*one_by_determinant_divisor;
+  const double shared_product_8 = one_by_determinant_divisor
+      *(slope_1_by_x*speed_a3_times_slope_3_by_a3 - slope_3_by_x*speed_a1_times_slope_1_by_a1);
+  const double shared_product_9 = one_by_determinant_divisor
+      *(slope_2_by_x*speed_a3_times_slope_3_by_a3 - slope_3_by_x*speed_a2_times_slope_2_by_a2);
+  const double shared_sum_2 = rate_of_slope_2_by_z*shared_product_8 + rate_of_slope_3_by_x*shared_product_2
+      + rate_of_slope_3_by_z*shared_product_7 - rate_of_slope_1_by_z*shared_product_9
+      - rate_of_slope_2_by_x*shared_product_4;
+  const double shared_sum_3 = rate_of_slope_2_by_x*shared_product_3 + rate_of_slope_2_by_y*shared_product_8
+      + rate_of_slope_3_by_x*shared_product + rate_of_slope_3_by_y*shared_product_7
+      - rate_of_slope_1_by_y*shared_product_9;
+  accelerations[0] = shared_product_10 + shared_sum - rate_of_slope_1_by_y*shared_product_6
+      - one_by_determinant_divisor*rate_of_determinant*velocity_x;
+  accelerations[1] = shared_product_11 + shared_sum_2 + rate_of_slope_1_by_x*shared_product_6
+      - one_by_determinant_divisor*rate_of_determinant*velocity_y;
+  accelerations[2] = shared_product_12 - shared_sum_3 - rate_of_slope_1_by_x*shared_product_5
+      - one_by_determinant_divisor*rate_of_determinant*velocity_z;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -1092,6 +1311,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double twice_arm_length = 2.0*p->arm_length;
   const double sum_in_slope_1_by_x = 2.0*p->base_radius - 2.0*p->plate_radius;
   const double arm_length_times_root_of_3 = p->arm_length*root_of_3;
+  const double arm_length_squared_times_2 = 2.0*p->arm_length*p->arm_length;
+  const double product_in_rate_of_slope_2_by_a2 = p->arm_length*p->arm_length*(0.5 + 0.5*root_of_3*root_of_3);
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1137,6 +1358,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.twice_arm_length = twice_arm_length;
   made.sum_in_slope_1_by_x = sum_in_slope_1_by_x;
   made.arm_length_times_root_of_3 = arm_length_times_root_of_3;
+  made.arm_length_squared_times_2 = arm_length_squared_times_2;
+  made.product_in_rate_of_slope_2_by_a2 = product_in_rate_of_slope_2_by_a2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(delta_c_machine *)machine = made;
   return SOFTKIN_OK;
@@ -1174,6 +1397,7 @@ const softkin_mechanism delta_c_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1216,6 +1440,17 @@ softkin_status delta_c_branches(const delta_c_machine *machine, const softkin_fr
 softkin_status delta_c_jacobian(const delta_c_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&delta_c_mechanism, machine, axes, rows, why);
+}
+
+softkin_status delta_c_axis_velocities(const delta_c_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&delta_c_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status delta_c_axis_accelerations(const delta_c_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&delta_c_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status delta_c_singularity(const delta_c_machine *machine, const double *axes, double *margins,

@@ -101,7 +101,8 @@ typedef struct {
       sum_in_pivot_2_y, base_radius_minus_plate_radius, half_arm_length,
       half_plate_radius_minus_half_base_radius, one_by_rod_length, half_by_rod_length,
       quotient_in_type2_rods_coplanar, quotient_in_margin_rods_coplanar, twice_arm_length,
-      sum_in_slope_1_by_x, arm_length_times_root_of_3;
+      sum_in_slope_1_by_x, arm_length_times_root_of_3, arm_length_squared_times_2,
+      product_in_rate_of_slope_2_by_a2;
   bool single_a1, single_a2, single_a3, single_a4;
 } delta_c_machine;
 
@@ -163,6 +164,15 @@ softkin_status delta_c_branches(const delta_c_machine *machine, const softkin_fr
 /** The Jacobian, per radian: 4 rows of 4. */
 softkin_status delta_c_jacobian(const delta_c_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status delta_c_axis_velocities(const delta_c_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status delta_c_axis_accelerations(const delta_c_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 4 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status delta_c_singularity(const delta_c_machine *machine, const double *axes, double *margins,

@@ -120,7 +120,9 @@ typedef struct {
       twice_cos_azimuth_3, twice_sin_azimuth_3, twice_inner_arm_3, inner_arm_1_times_sin_azimuth_1_times_2,
       cos_azimuth_1_times_inner_arm_1_times_2, inner_arm_2_times_sin_azimuth_2_times_2,
       cos_azimuth_2_times_inner_arm_2_times_2, inner_arm_3_times_sin_azimuth_3_times_2,
-      cos_azimuth_3_times_inner_arm_3_times_2;
+      cos_azimuth_3_times_inner_arm_3_times_2, inner_arm_1_squared_times_2, inner_arm_2_squared_times_2,
+      inner_arm_3_squared_times_2, product_in_rate_of_slope_1_by_a1, product_in_rate_of_slope_2_by_a2,
+      product_in_rate_of_slope_3_by_a3;
   bool single_a1, single_a2, single_a3;
 } delta_p3c_type3_machine;
 
@@ -182,6 +184,15 @@ softkin_status delta_p3c_type3_branches(const delta_p3c_type3_machine *machine, 
 /** The Jacobian, per radian: 3 rows of 3. */
 softkin_status delta_p3c_type3_jacobian(const delta_p3c_type3_machine *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status delta_p3c_type3_axis_velocities(const delta_p3c_type3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status delta_p3c_type3_axis_accelerations(const delta_p3c_type3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 4 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status delta_p3c_type3_singularity(const delta_p3c_type3_machine *machine, const double *axes,

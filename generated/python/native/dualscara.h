@@ -99,7 +99,8 @@ typedef struct {
       arm_length_2_times_shortest_link, arm_length_2_minus_rod_length_2,
       machine_scale_squared_times_free_angle, one_by_rod_length_1, one_by_rod_length_2,
       arm_length_1_plus_rod_length_1, arm_length_2_plus_rod_length_2, quotient_in_type2_rods_aligned,
-      quotient_in_margin_rods_aligned, twice_arm_length_1, twice_arm_length_2;
+      quotient_in_margin_rods_aligned, twice_arm_length_1, twice_arm_length_2, arm_length_1_squared_times_2,
+      arm_length_2_squared_times_2;
   bool single_a1, single_a2, single_a4;
 } dualscara_machine;
 
@@ -161,6 +162,15 @@ softkin_status dualscara_branches(const dualscara_machine *machine, const softki
 /** The Jacobian, per radian: 4 rows of 4. */
 softkin_status dualscara_jacobian(const dualscara_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status dualscara_axis_velocities(const dualscara_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status dualscara_axis_accelerations(const dualscara_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 3 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status dualscara_singularity(const dualscara_machine *machine, const double *axes, double *margins,

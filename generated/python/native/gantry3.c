@@ -168,6 +168,21 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], speed_x = speeds[0],
+      speed_y = speeds[1], speed_z = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_x, speed_y, speed_z, axis_x, axis_y, axis_z}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  accelerations[2] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const gantry3_parameters *p = parameters;
@@ -230,6 +245,7 @@ const softkin_mechanism gantry3_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void gantry3_defaults(gantry3_parameters *parameters) {
@@ -271,6 +287,17 @@ softkin_status gantry3_branches(const gantry3_machine *machine, const softkin_fr
 softkin_status gantry3_jacobian(const gantry3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&gantry3_mechanism, machine, axes, rows, why);
+}
+
+softkin_status gantry3_axis_velocities(const gantry3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&gantry3_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status gantry3_axis_accelerations(const gantry3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&gantry3_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status gantry3_singularity(const gantry3_machine *machine, const double *axes, double *margins,

@@ -216,6 +216,21 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_r = axes[2], speed_x = speeds[0],
+      speed_y = speeds[1], speed_r = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_r, speed_x, speed_y, axis_r, axis_x, axis_y}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  accelerations[2] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const gantrycutter2_parameters *p = parameters;
@@ -287,6 +302,7 @@ const softkin_mechanism gantrycutter2_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void gantrycutter2_defaults(gantrycutter2_parameters *parameters) {
@@ -328,6 +344,17 @@ softkin_status gantrycutter2_branches(const gantrycutter2_machine *machine, cons
 softkin_status gantrycutter2_jacobian(const gantrycutter2_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&gantrycutter2_mechanism, machine, axes, rows, why);
+}
+
+softkin_status gantrycutter2_axis_velocities(const gantrycutter2_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&gantrycutter2_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status gantrycutter2_axis_accelerations(const gantrycutter2_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&gantrycutter2_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status gantrycutter2_singularity(const gantrycutter2_machine *machine, const double *axes,

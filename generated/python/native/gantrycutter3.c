@@ -240,6 +240,23 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], axis_r = axes[3], speed_x = speeds[0],
+      speed_y = speeds[1], speed_z = speeds[2], speed_r = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_r, speed_x, speed_y, speed_z, axis_r, axis_x, axis_y,
+      axis_z}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  accelerations[2] = 0.0;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const gantrycutter3_parameters *p = parameters;
@@ -316,6 +333,7 @@ const softkin_mechanism gantrycutter3_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void gantrycutter3_defaults(gantrycutter3_parameters *parameters) {
@@ -357,6 +375,17 @@ softkin_status gantrycutter3_branches(const gantrycutter3_machine *machine, cons
 softkin_status gantrycutter3_jacobian(const gantrycutter3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&gantrycutter3_mechanism, machine, axes, rows, why);
+}
+
+softkin_status gantrycutter3_axis_velocities(const gantrycutter3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&gantrycutter3_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status gantrycutter3_axis_accelerations(const gantrycutter3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&gantrycutter3_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status gantrycutter3_singularity(const gantrycutter3_machine *machine, const double *axes,

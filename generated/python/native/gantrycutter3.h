@@ -136,6 +136,15 @@ softkin_status gantrycutter3_branches(const gantrycutter3_machine *machine, cons
 softkin_status gantrycutter3_jacobian(const gantrycutter3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status gantrycutter3_axis_velocities(const gantrycutter3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status gantrycutter3_axis_accelerations(const gantrycutter3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 0 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status gantrycutter3_singularity(const gantrycutter3_machine *machine, const double *axes,
     double *margins, bool *is_singular, softkin_refusal *why);

@@ -153,6 +153,15 @@ softkin_status headhead_cb_branches(const headhead_cb_machine *machine, const so
 softkin_status headhead_cb_jacobian(const headhead_cb_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 5 numbers, rows as in the Jacobian. */
+softkin_status headhead_cb_axis_velocities(const headhead_cb_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 5 numbers, at the velocities that the axes have.
+ * */
+softkin_status headhead_cb_axis_accelerations(const headhead_cb_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status headhead_cb_singularity(const headhead_cb_machine *machine, const double *axes,
     double *margins, bool *is_singular, softkin_refusal *why);

@@ -342,6 +342,63 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const headtable_ac_machine *k = machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], axis_a = axes[3], axis_c = axes[4],
+      speed_x = speeds[0], speed_y = speeds[1], speed_z = speeds[2], speed_a = speeds[3], speed_c = speeds[4];
+  if (!softkin_are_reasonable((const double[]){speed_a, speed_c, speed_x, speed_y, speed_z, axis_a, axis_c,
+      axis_x, axis_y, axis_z}, 10)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double c = SOFTKIN_DEGREE*(axis_c - k->offset_c);
+  const double sin_c = sin(c);
+  const double rate_of_cos_c = -speed_c*sin_c;
+  const double cos_c = cos(c);
+  const double rate_of_sin_c = speed_c*cos_c;
+  const double a = SOFTKIN_DEGREE*(axis_a - k->offset_a);
+  const double cos_a = cos(a);
+  const double rate_of_sin_a = speed_a*cos_a;
+  const double joint_y = axis_y - k->offset_y;
+  const double rate_of_y_at_a = speed_y*cos_c + joint_y*rate_of_cos_c;
+  const double sin_a = sin(a);
+  const double rate_of_cos_a = -speed_a*sin_a;
+  const double rate_of_r22_at_a = rate_of_cos_c*cos_a + rate_of_cos_a*cos_c;
+  const double joint_x = axis_x - k->offset_x;
+  const double rate_of_r23_at_a = -rate_of_sin_a*cos_c - rate_of_cos_c*sin_a;
+  const double rate_of_y = rate_of_y_at_a + k->head_offset*rate_of_r22_at_a - joint_x*rate_of_sin_c
+      - k->pivot_length*rate_of_r23_at_a - speed_x*sin_c;
+  const double rate_of_x_at_a = joint_y*rate_of_sin_c + speed_y*sin_c;
+  const double rate_of_r12_at_a = rate_of_sin_c*cos_a + rate_of_cos_a*sin_c;
+  const double rate_of_r13_at_a = -rate_of_sin_a*sin_c - rate_of_sin_c*sin_a;
+  const double rate_of_x = rate_of_x_at_a + speed_x*cos_c + k->head_offset*rate_of_r12_at_a
+      + joint_x*rate_of_cos_c - k->pivot_length*rate_of_r13_at_a;
+  const double y_at_a = joint_y*cos_c;
+  const double r22_at_a = cos_a*cos_c;
+  const double r23_at_a = -cos_c*sin_a;
+  const double y = y_at_a + k->head_offset*r22_at_a - joint_x*sin_c - k->pivot_length*r23_at_a;
+  const double x_at_a = joint_y*sin_c;
+  const double r12_at_a = cos_a*sin_c;
+  const double r13_at_a = -sin_a*sin_c;
+  const double x = x_at_a + joint_x*cos_c + k->head_offset*r12_at_a - k->pivot_length*r13_at_a;
+  const double joint_z = axis_z - k->offset_z;
+  const double z = joint_z + k->head_offset*sin_a - k->pivot_length*cos_a;
+  const double shared_sum = speed_y + (joint_z - z)*speed_a;
+  const double rate_of_z = speed_z + k->head_offset*rate_of_sin_a - k->pivot_length*rate_of_cos_a;
+  const double shared_product = (speed_z - rate_of_z)*speed_a;
+  accelerations[0] = rate_of_cos_c*speed_x + rate_of_sin_c*shared_sum + rate_of_y*speed_c
+      + shared_product*sin_c;
+  accelerations[1] = shared_product*cos_c + rate_of_cos_c*shared_sum - rate_of_sin_c*speed_x
+      - rate_of_x*speed_c;
+  accelerations[2] = speed_a*((rate_of_y - rate_of_y_at_a)*cos_c + rate_of_cos_c*(y - y_at_a)
+      + rate_of_sin_c*(x - x_at_a) + (rate_of_x - rate_of_x_at_a)*sin_c);
+  accelerations[3] = 2.0*speed_a*(rate_of_cos_c*cos_c + rate_of_sin_c*sin_c);
+  accelerations[4] = speed_a*(rate_of_r12_at_a*cos_c + r12_at_a*rate_of_cos_c - r22_at_a*rate_of_sin_c
+      - rate_of_r22_at_a*sin_c) - rate_of_sin_a*speed_c;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -509,6 +566,7 @@ const softkin_mechanism headtable_ac_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -551,6 +609,17 @@ softkin_status headtable_ac_branches(const headtable_ac_machine *machine, const 
 softkin_status headtable_ac_jacobian(const headtable_ac_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&headtable_ac_mechanism, machine, axes, rows, why);
+}
+
+softkin_status headtable_ac_axis_velocities(const headtable_ac_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&headtable_ac_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status headtable_ac_axis_accelerations(const headtable_ac_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&headtable_ac_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status headtable_ac_singularity(const headtable_ac_machine *machine, const double *axes,

@@ -151,6 +151,15 @@ softkin_status headtable_bc_branches(const headtable_bc_machine *machine, const 
 softkin_status headtable_bc_jacobian(const headtable_bc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 5 numbers, rows as in the Jacobian. */
+softkin_status headtable_bc_axis_velocities(const headtable_bc_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 5 numbers, at the velocities that the axes have.
+ * */
+softkin_status headtable_bc_axis_accelerations(const headtable_bc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status headtable_bc_singularity(const headtable_bc_machine *machine, const double *axes,
     double *margins, bool *is_singular, softkin_refusal *why);

@@ -1227,6 +1227,298 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const hexaglide_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3], axis_a5 = axes[4],
+      axis_a6 = axes[5], speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2],
+      speed_a4 = speeds[3], speed_a5 = speeds[4], speed_a6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6,
+      axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->start_x, k->start_y, k->start_z}, 15)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  /* pose of the platform, by Newton's method from the start */
+  double results[49];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6, k->start_r11,
+      k->start_r12, k->start_r13, k->start_r21, k->start_r22, k->start_r23, k->start_r31, k->start_r32,
+      k->start_r33, k->start_x, k->start_y, k->start_z};
+  const softkin_status status = find_platform(k, arguments, results, why);
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  const double found_x = results[0], found_y = results[1], found_z = results[2], found_r11 = results[3],
+      found_r12 = results[4], found_r13 = results[5], found_r21 = results[6], found_r22 = results[7],
+      found_r23 = results[8], found_r31 = results[9], found_r32 = results[10], found_r33 = results[11],
+      determinant = results[12];
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > 2e-12)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double a1 = axis_a1 - k->offset_a1;
+  const double arm_1_x = found_r11*k->platform_1_x + found_r12*k->platform_1_y + found_r13*k->platform_1_z;
+  /* leg 1: vector from its joint on the base to its joint on the platform */
+  const double rod_1_x = arm_1_x + found_x - a1;
+  const double along_1_x = k->one_by_divisor_1_2*rod_1_x;
+  const double arm_1_y = found_r21*k->platform_1_x + found_r22*k->platform_1_y + found_r23*k->platform_1_z;
+  const double rod_1_y = arm_1_y + found_y - k->rail_1_y;
+  const double along_1_y = k->one_by_divisor_1_2*rod_1_y;
+  const double arm_1_z = found_r31*k->platform_1_x + found_r32*k->platform_1_y + found_r33*k->platform_1_z;
+  const double rod_1_z = arm_1_z + found_z - k->rail_1_z;
+  const double along_1_z = k->one_by_divisor_1_2*rod_1_z;
+  const double moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*k->one_by_platform_radius;
+  const double moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*k->one_by_platform_radius;
+  const double moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*k->one_by_platform_radius;
+  const double a2 = axis_a2 - k->offset_a2;
+  const double arm_2_x = found_r11*k->platform_2_x + found_r12*k->platform_2_y + found_r13*k->platform_2_z;
+  /* leg 2: vector from its joint on the base to its joint on the platform */
+  const double rod_2_x = arm_2_x + found_x - a2;
+  const double along_2_x = k->one_by_divisor_2_2*rod_2_x;
+  const double arm_2_y = found_r21*k->platform_2_x + found_r22*k->platform_2_y + found_r23*k->platform_2_z;
+  const double rod_2_y = arm_2_y + found_y - k->rail_2_y;
+  const double along_2_y = k->one_by_divisor_2_2*rod_2_y;
+  const double arm_2_z = found_r31*k->platform_2_x + found_r32*k->platform_2_y + found_r33*k->platform_2_z;
+  const double rod_2_z = arm_2_z + found_z - k->rail_2_z;
+  const double along_2_z = k->one_by_divisor_2_2*rod_2_z;
+  const double moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*k->one_by_platform_radius;
+  const double moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*k->one_by_platform_radius;
+  const double moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*k->one_by_platform_radius;
+  const double a3 = axis_a3 - k->offset_a3;
+  const double arm_3_x = found_r11*k->platform_3_x + found_r12*k->platform_3_y + found_r13*k->platform_3_z;
+  /* leg 3: vector from its joint on the base to its joint on the platform */
+  const double rod_3_x = arm_3_x + found_x - a3;
+  const double along_3_x = k->one_by_divisor_3_2*rod_3_x;
+  const double arm_3_y = found_r21*k->platform_3_x + found_r22*k->platform_3_y + found_r23*k->platform_3_z;
+  const double rod_3_y = arm_3_y + found_y - k->rail_3_y;
+  const double along_3_y = k->one_by_divisor_3_2*rod_3_y;
+  const double arm_3_z = found_r31*k->platform_3_x + found_r32*k->platform_3_y + found_r33*k->platform_3_z;
+  const double rod_3_z = arm_3_z + found_z - k->rail_3_z;
+  const double along_3_z = k->one_by_divisor_3_2*rod_3_z;
+  const double moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*k->one_by_platform_radius;
+  const double moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*k->one_by_platform_radius;
+  const double moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*k->one_by_platform_radius;
+  const double a4 = axis_a4 - k->offset_a4;
+  const double arm_4_x = found_r11*k->platform_4_x + found_r12*k->platform_4_y + found_r13*k->platform_4_z;
+  /* leg 4: vector from its joint on the base to its joint on the platform */
+  const double rod_4_x = arm_4_x + found_x - a4;
+  const double along_4_x = k->one_by_divisor_4_2*rod_4_x;
+  const double arm_4_y = found_r21*k->platform_4_x + found_r22*k->platform_4_y + found_r23*k->platform_4_z;
+  const double rod_4_y = arm_4_y + found_y - k->rail_4_y;
+  const double along_4_y = k->one_by_divisor_4_2*rod_4_y;
+  const double arm_4_z = found_r31*k->platform_4_x + found_r32*k->platform_4_y + found_r33*k->platform_4_z;
+  const double rod_4_z = arm_4_z + found_z - k->rail_4_z;
+  const double along_4_z = k->one_by_divisor_4_2*rod_4_z;
+  const double moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*k->one_by_platform_radius;
+  const double moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*k->one_by_platform_radius;
+  const double moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*k->one_by_platform_radius;
+  const double a5 = axis_a5 - k->offset_a5;
+  const double arm_5_x = found_r11*k->platform_5_x + found_r12*k->platform_5_y + found_r13*k->platform_5_z;
+  /* leg 5: vector from its joint on the base to its joint on the platform */
+  const double rod_5_x = arm_5_x + found_x - a5;
+  const double along_5_x = k->one_by_divisor_5_2*rod_5_x;
+  const double arm_5_y = found_r21*k->platform_5_x + found_r22*k->platform_5_y + found_r23*k->platform_5_z;
+  const double rod_5_y = arm_5_y + found_y - k->rail_5_y;
+  const double along_5_y = k->one_by_divisor_5_2*rod_5_y;
+  const double arm_5_z = found_r31*k->platform_5_x + found_r32*k->platform_5_y + found_r33*k->platform_5_z;
+  const double rod_5_z = arm_5_z + found_z - k->rail_5_z;
+  const double along_5_z = k->one_by_divisor_5_2*rod_5_z;
+  const double moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*k->one_by_platform_radius;
+  const double moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*k->one_by_platform_radius;
+  const double moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*k->one_by_platform_radius;
+  const double a6 = axis_a6 - k->offset_a6;
+  const double arm_6_x = found_r11*k->platform_6_x + found_r12*k->platform_6_y + found_r13*k->platform_6_z;
+  /* leg 6: vector from its joint on the base to its joint on the platform */
+  const double rod_6_x = arm_6_x + found_x - a6;
+  const double along_6_x = k->one_by_divisor_6_2*rod_6_x;
+  const double arm_6_y = found_r21*k->platform_6_x + found_r22*k->platform_6_y + found_r23*k->platform_6_z;
+  const double rod_6_y = arm_6_y + found_y - k->rail_6_y;
+  const double along_6_y = k->one_by_divisor_6_2*rod_6_y;
+  const double arm_6_z = found_r31*k->platform_6_x + found_r32*k->platform_6_y + found_r33*k->platform_6_z;
+  const double rod_6_z = arm_6_z + found_z - k->rail_6_z;
+  const double along_6_z = k->one_by_divisor_6_2*rod_6_z;
+  const double moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*k->one_by_platform_radius;
+  const double moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*k->one_by_platform_radius;
+  const double moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*k->one_by_platform_radius;
+  /* twist of the platform per velocity of each axis */
+  double system[6][7] = {{along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z,
+      along_1_x*speed_a1}, {along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+      along_2_x*speed_a2}, {along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z,
+      along_3_x*speed_a3}, {along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z,
+      along_4_x*speed_a4}, {along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
+      along_5_x*speed_a5}, {along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+      along_6_x*speed_a6}};
+  softkin_solve(&system[0][0], 6, 1);
+  const double column_1_vx = system[0][6], column_1_vy = system[1][6], column_1_vz = system[2][6],
+      column_1_wx = system[3][6], column_1_wy = system[4][6], column_1_wz = system[5][6];
+  const double product_in_rate_of_arm_1_x = (column_1_wy*found_r33 - column_1_wz*found_r23)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_x_2 = (column_1_wy*found_r32 - column_1_wz*found_r22)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_x_3 = (column_1_wy*found_r31 - column_1_wz*found_r21)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_x = k->platform_1_x*product_in_rate_of_arm_1_x_3
+      + k->platform_1_y*product_in_rate_of_arm_1_x_2 + k->platform_1_z*product_in_rate_of_arm_1_x;
+  const double speed_a1_minus_column_1_vx = speed_a1 - column_1_vx;
+  const double rate_of_rod_1_x = rate_of_arm_1_x - speed_a1_minus_column_1_vx;
+  const double rate_of_along_1_x = k->one_by_divisor_1_2*rate_of_rod_1_x;
+  const double product_in_rate_of_arm_1_y = (column_1_wz*found_r13 - column_1_wx*found_r33)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_y_2 = (column_1_wz*found_r12 - column_1_wx*found_r32)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_y_3 = (column_1_wz*found_r11 - column_1_wx*found_r31)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_y = k->platform_1_x*product_in_rate_of_arm_1_y_3
+      + k->platform_1_y*product_in_rate_of_arm_1_y_2 + k->platform_1_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y;
+  const double rate_of_along_1_y = k->one_by_divisor_1_2*rate_of_rod_1_y;
+  const double product_in_rate_of_arm_1_z = (column_1_wx*found_r23 - column_1_wy*found_r13)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_z_2 = (column_1_wx*found_r22 - column_1_wy*found_r12)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_z_3 = (column_1_wx*found_r21 - column_1_wy*found_r11)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_z = k->platform_1_x*product_in_rate_of_arm_1_z_3
+      + k->platform_1_y*product_in_rate_of_arm_1_z_2 + k->platform_1_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_1_z = column_1_vz + rate_of_arm_1_z;
+  const double rate_of_along_1_z = k->one_by_divisor_1_2*rate_of_rod_1_z;
+  const double rate_of_moment_1_x = (along_1_z*rate_of_arm_1_y + arm_1_y*rate_of_along_1_z
+      - along_1_y*rate_of_arm_1_z - arm_1_z*rate_of_along_1_y)*k->one_by_platform_radius;
+  const double rate_of_moment_1_y = (along_1_x*rate_of_arm_1_z + arm_1_z*rate_of_along_1_x
+      - along_1_z*rate_of_arm_1_x - arm_1_x*rate_of_along_1_z)*k->one_by_platform_radius;
+  const double rate_of_moment_1_z = (along_1_y*rate_of_arm_1_x + arm_1_x*rate_of_along_1_y
+      - along_1_x*rate_of_arm_1_y - arm_1_y*rate_of_along_1_x)*k->one_by_platform_radius;
+  const double rate_of_arm_2_x = k->platform_2_x*product_in_rate_of_arm_1_x_3
+      + k->platform_2_y*product_in_rate_of_arm_1_x_2 + k->platform_2_z*product_in_rate_of_arm_1_x;
+  const double speed_a2_minus_column_1_vx = speed_a2 - column_1_vx;
+  const double rate_of_rod_2_x = rate_of_arm_2_x - speed_a2_minus_column_1_vx;
+  const double rate_of_along_2_x = k->one_by_divisor_2_2*rate_of_rod_2_x;
+  const double rate_of_arm_2_y = k->platform_2_x*product_in_rate_of_arm_1_y_3
+      + k->platform_2_y*product_in_rate_of_arm_1_y_2 + k->platform_2_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y;
+  const double rate_of_along_2_y = k->one_by_divisor_2_2*rate_of_rod_2_y;
+  const double rate_of_arm_2_z = k->platform_2_x*product_in_rate_of_arm_1_z_3
+      + k->platform_2_y*product_in_rate_of_arm_1_z_2 + k->platform_2_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_2_z = column_1_vz + rate_of_arm_2_z;
+  const double rate_of_along_2_z = k->one_by_divisor_2_2*rate_of_rod_2_z;
+  const double rate_of_moment_2_x = (along_2_z*rate_of_arm_2_y + arm_2_y*rate_of_along_2_z
+      - along_2_y*rate_of_arm_2_z - arm_2_z*rate_of_along_2_y)*k->one_by_platform_radius;
+  const double rate_of_moment_2_y = (along_2_x*rate_of_arm_2_z + arm_2_z*rate_of_along_2_x
+      - along_2_z*rate_of_arm_2_x - arm_2_x*rate_of_along_2_z)*k->one_by_platform_radius;
+  const double rate_of_moment_2_z = (along_2_y*rate_of_arm_2_x + arm_2_x*rate_of_along_2_y
+      - along_2_x*rate_of_arm_2_y - arm_2_y*rate_of_along_2_x)*k->one_by_platform_radius;
+  const double rate_of_arm_3_x = k->platform_3_x*product_in_rate_of_arm_1_x_3
+      + k->platform_3_y*product_in_rate_of_arm_1_x_2 + k->platform_3_z*product_in_rate_of_arm_1_x;
+  const double speed_a3_minus_column_1_vx = speed_a3 - column_1_vx;
+  const double rate_of_rod_3_x = rate_of_arm_3_x - speed_a3_minus_column_1_vx;
+  const double rate_of_along_3_x = k->one_by_divisor_3_2*rate_of_rod_3_x;
+  const double rate_of_arm_3_y = k->platform_3_x*product_in_rate_of_arm_1_y_3
+      + k->platform_3_y*product_in_rate_of_arm_1_y_2 + k->platform_3_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y;
+  const double rate_of_along_3_y = k->one_by_divisor_3_2*rate_of_rod_3_y;
+  const double rate_of_arm_3_z = k->platform_3_x*product_in_rate_of_arm_1_z_3
+      + k->platform_3_y*product_in_rate_of_arm_1_z_2 + k->platform_3_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_3_z = column_1_vz + rate_of_arm_3_z;
+  const double rate_of_along_3_z = k->one_by_divisor_3_2*rate_of_rod_3_z;
+  const double rate_of_moment_3_x = (along_3_z*rate_of_arm_3_y + arm_3_y*rate_of_along_3_z
+      - along_3_y*rate_of_arm_3_z - arm_3_z*rate_of_along_3_y)*k->one_by_platform_radius;
+  const double rate_of_moment_3_y = (along_3_x*rate_of_arm_3_z + arm_3_z*rate_of_along_3_x
+      - along_3_z*rate_of_arm_3_x - arm_3_x*rate_of_along_3_z)*k->one_by_platform_radius;
+  const double rate_of_moment_3_z = (along_3_y*rate_of_arm_3_x + arm_3_x*rate_of_along_3_y
+      - along_3_x*rate_of_arm_3_y - arm_3_y*rate_of_along_3_x)*k->one_by_platform_radius;
+  const double rate_of_arm_4_x = k->platform_4_x*product_in_rate_of_arm_1_x_3
+      + k->platform_4_y*product_in_rate_of_arm_1_x_2 + k->platform_4_z*product_in_rate_of_arm_1_x;
+  const double speed_a4_minus_column_1_vx = speed_a4 - column_1_vx;
+  const double rate_of_rod_4_x = rate_of_arm_4_x - speed_a4_minus_column_1_vx;
+  const double rate_of_along_4_x = k->one_by_divisor_4_2*rate_of_rod_4_x;
+  const double rate_of_arm_4_y = k->platform_4_x*product_in_rate_of_arm_1_y_3
+      + k->platform_4_y*product_in_rate_of_arm_1_y_2 + k->platform_4_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_4_y = column_1_vy + rate_of_arm_4_y;
+  const double rate_of_along_4_y = k->one_by_divisor_4_2*rate_of_rod_4_y;
+  const double rate_of_arm_4_z = k->platform_4_x*product_in_rate_of_arm_1_z_3
+      + k->platform_4_y*product_in_rate_of_arm_1_z_2 + k->platform_4_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_4_z = column_1_vz + rate_of_arm_4_z;
+  const double rate_of_along_4_z = k->one_by_divisor_4_2*rate_of_rod_4_z;
+  const double rate_of_moment_4_x = (along_4_z*rate_of_arm_4_y + arm_4_y*rate_of_along_4_z
+      - along_4_y*rate_of_arm_4_z - arm_4_z*rate_of_along_4_y)*k->one_by_platform_radius;
+  const double rate_of_moment_4_y = (along_4_x*rate_of_arm_4_z + arm_4_z*rate_of_along_4_x
+      - along_4_z*rate_of_arm_4_x - arm_4_x*rate_of_along_4_z)*k->one_by_platform_radius;
+  const double rate_of_moment_4_z = (along_4_y*rate_of_arm_4_x + arm_4_x*rate_of_along_4_y
+      - along_4_x*rate_of_arm_4_y - arm_4_y*rate_of_along_4_x)*k->one_by_platform_radius;
+  const double rate_of_arm_5_x = k->platform_5_x*product_in_rate_of_arm_1_x_3
+      + k->platform_5_y*product_in_rate_of_arm_1_x_2 + k->platform_5_z*product_in_rate_of_arm_1_x;
+  const double speed_a5_minus_column_1_vx = speed_a5 - column_1_vx;
+  const double rate_of_rod_5_x = rate_of_arm_5_x - speed_a5_minus_column_1_vx;
+  const double rate_of_along_5_x = k->one_by_divisor_5_2*rate_of_rod_5_x;
+  const double rate_of_arm_5_y = k->platform_5_x*product_in_rate_of_arm_1_y_3
+      + k->platform_5_y*product_in_rate_of_arm_1_y_2 + k->platform_5_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_5_y = column_1_vy + rate_of_arm_5_y;
+  const double rate_of_along_5_y = k->one_by_divisor_5_2*rate_of_rod_5_y;
+  const double rate_of_arm_5_z = k->platform_5_x*product_in_rate_of_arm_1_z_3
+      + k->platform_5_y*product_in_rate_of_arm_1_z_2 + k->platform_5_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_5_z = column_1_vz + rate_of_arm_5_z;
+  const double rate_of_along_5_z = k->one_by_divisor_5_2*rate_of_rod_5_z;
+  const double rate_of_moment_5_x = (along_5_z*rate_of_arm_5_y + arm_5_y*rate_of_along_5_z
+      - along_5_y*rate_of_arm_5_z - arm_5_z*rate_of_along_5_y)*k->one_by_platform_radius;
+  const double rate_of_moment_5_y = (along_5_x*rate_of_arm_5_z + arm_5_z*rate_of_along_5_x
+      - along_5_z*rate_of_arm_5_x - arm_5_x*rate_of_along_5_z)*k->one_by_platform_radius;
+  const double rate_of_moment_5_z = (along_5_y*rate_of_arm_5_x + arm_5_x*rate_of_along_5_y
+      - along_5_x*rate_of_arm_5_y - arm_5_y*rate_of_along_5_x)*k->one_by_platform_radius;
+  const double rate_of_arm_6_x = k->platform_6_x*product_in_rate_of_arm_1_x_3
+      + k->platform_6_y*product_in_rate_of_arm_1_x_2 + k->platform_6_z*product_in_rate_of_arm_1_x;
+  const double speed_a6_minus_column_1_vx = speed_a6 - column_1_vx;
+  const double rate_of_rod_6_x = rate_of_arm_6_x - speed_a6_minus_column_1_vx;
+  const double rate_of_along_6_x = k->one_by_divisor_6_2*rate_of_rod_6_x;
+  const double rate_of_arm_6_y = k->platform_6_x*product_in_rate_of_arm_1_y_3
+      + k->platform_6_y*product_in_rate_of_arm_1_y_2 + k->platform_6_z*product_in_rate_of_arm_1_y;
+  const double rate_of_rod_6_y = column_1_vy + rate_of_arm_6_y;
+  const double rate_of_along_6_y = k->one_by_divisor_6_2*rate_of_rod_6_y;
+  const double rate_of_arm_6_z = k->platform_6_x*product_in_rate_of_arm_1_z_3
+      + k->platform_6_y*product_in_rate_of_arm_1_z_2 + k->platform_6_z*product_in_rate_of_arm_1_z;
+  const double rate_of_rod_6_z = column_1_vz + rate_of_arm_6_z;
+  const double rate_of_along_6_z = k->one_by_divisor_6_2*rate_of_rod_6_z;
+  const double rate_of_moment_6_x = (along_6_z*rate_of_arm_6_y + arm_6_y*rate_of_along_6_z
+      - along_6_y*rate_of_arm_6_z - arm_6_z*rate_of_along_6_y)*k->one_by_platform_radius;
+  const double rate_of_moment_6_y = (along_6_x*rate_of_arm_6_z + arm_6_z*rate_of_along_6_x
+      - along_6_z*rate_of_arm_6_x - arm_6_x*rate_of_along_6_z)*k->one_by_platform_radius;
+  const double rate_of_moment_6_z = (along_6_y*rate_of_arm_6_x + arm_6_x*rate_of_along_6_y
+      - along_6_x*rate_of_arm_6_y - arm_6_y*rate_of_along_6_x)*k->one_by_platform_radius;
+  double system_of_2[6][7] = {{along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z,
+      rate_of_along_1_x*speed_a1_minus_column_1_vx - column_1_vy*rate_of_along_1_y
+      - column_1_vz*rate_of_along_1_z - column_1_wx*rate_of_moment_1_x - column_1_wy*rate_of_moment_1_y
+      - column_1_wz*rate_of_moment_1_z},
+      {along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+      rate_of_along_2_x*speed_a2_minus_column_1_vx - column_1_vy*rate_of_along_2_y
+      - column_1_vz*rate_of_along_2_z - column_1_wx*rate_of_moment_2_x - column_1_wy*rate_of_moment_2_y
+      - column_1_wz*rate_of_moment_2_z},
+      {along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z,
+      rate_of_along_3_x*speed_a3_minus_column_1_vx - column_1_vy*rate_of_along_3_y
+      - column_1_vz*rate_of_along_3_z - column_1_wx*rate_of_moment_3_x - column_1_wy*rate_of_moment_3_y
+      - column_1_wz*rate_of_moment_3_z},
+      {along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z,
+      rate_of_along_4_x*speed_a4_minus_column_1_vx - column_1_vy*rate_of_along_4_y
+      - column_1_vz*rate_of_along_4_z - column_1_wx*rate_of_moment_4_x - column_1_wy*rate_of_moment_4_y
+      - column_1_wz*rate_of_moment_4_z},
+      {along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
+      rate_of_along_5_x*speed_a5_minus_column_1_vx - column_1_vy*rate_of_along_5_y
+      - column_1_vz*rate_of_along_5_z - column_1_wx*rate_of_moment_5_x - column_1_wy*rate_of_moment_5_y
+      - column_1_wz*rate_of_moment_5_z},
+      {along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+      rate_of_along_6_x*speed_a6_minus_column_1_vx - column_1_vy*rate_of_along_6_y
+      - column_1_vz*rate_of_along_6_z - column_1_wx*rate_of_moment_6_x - column_1_wy*rate_of_moment_6_y
+      - column_1_wz*rate_of_moment_6_z}};
+  softkin_solve(&system_of_2[0][0], 6, 1);
+  const double rate_of_column_1_vx = system_of_2[0][6], rate_of_column_1_vy = system_of_2[1][6],
+      rate_of_column_1_vz = system_of_2[2][6], rate_of_column_1_wx = system_of_2[3][6],
+      rate_of_column_1_wy = system_of_2[4][6], rate_of_column_1_wz = system_of_2[5][6];
+  accelerations[0] = rate_of_column_1_vx;
+  accelerations[1] = rate_of_column_1_vy;
+  accelerations[2] = rate_of_column_1_vz;
+  accelerations[3] = k->one_by_platform_radius*rate_of_column_1_wx;
+  accelerations[4] = k->one_by_platform_radius*rate_of_column_1_wy;
+  accelerations[5] = k->one_by_platform_radius*rate_of_column_1_wz;
+  return SOFTKIN_OK;
+}
+
 /* The machine with another start of forward kinematics. */
 static void start_at(const void *machine, const softkin_frame *start, void *moved) {
   hexaglide_machine *k = moved;
@@ -1557,6 +1849,18 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   /* least cosine of a leg's lean on the plate */
   const double least_cos_plate = cos(SOFTKIN_DEGREE*p->max_angle_platform_joint) > -0.999999999999
       ? cos(SOFTKIN_DEGREE*p->max_angle_platform_joint) - 1e-12 : -2.0;
+  /* leg 1 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_1_2 = p->rod_length_1 > 1e-9*machine_scale ? p->rod_length_1 : 1.0;
+  /* leg 2 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_2_2 = p->rod_length_2 > 1e-9*machine_scale ? p->rod_length_2 : 1.0;
+  /* leg 3 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_3_2 = p->rod_length_3 > 1e-9*machine_scale ? p->rod_length_3 : 1.0;
+  /* leg 4 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_4_2 = p->rod_length_4 > 1e-9*machine_scale ? p->rod_length_4 : 1.0;
+  /* leg 5 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_5_2 = p->rod_length_5 > 1e-9*machine_scale ? p->rod_length_5 : 1.0;
+  /* leg 6 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_6_2 = p->rod_length_6 > 1e-9*machine_scale ? p->rod_length_6 : 1.0;
   const double machine_scale_times_shortest_link = 1e-9*machine_scale;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double rod_length_1_squared = p->rod_length_1*p->rod_length_1;
@@ -1593,6 +1897,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double half_by_rod_length_4 = 0.5/p->rod_length_4;
   const double half_by_rod_length_5 = 0.5/p->rod_length_5;
   const double half_by_rod_length_6 = 0.5/p->rod_length_6;
+  const double one_by_divisor_1_2 = 1.0/divisor_1_2;
+  const double one_by_divisor_2_2 = 1.0/divisor_2_2;
+  const double one_by_divisor_3_2 = 1.0/divisor_3_2;
+  const double one_by_divisor_4_2 = 1.0/divisor_4_2;
+  const double one_by_divisor_5_2 = 1.0/divisor_5_2;
+  const double one_by_divisor_6_2 = 1.0/divisor_6_2;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.lowest_a2 = window_of_a2.lowest;
@@ -1754,6 +2064,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.half_by_rod_length_4 = half_by_rod_length_4;
   made.half_by_rod_length_5 = half_by_rod_length_5;
   made.half_by_rod_length_6 = half_by_rod_length_6;
+  made.one_by_divisor_1_2 = one_by_divisor_1_2;
+  made.one_by_divisor_2_2 = one_by_divisor_2_2;
+  made.one_by_divisor_3_2 = one_by_divisor_3_2;
+  made.one_by_divisor_4_2 = one_by_divisor_4_2;
+  made.one_by_divisor_5_2 = one_by_divisor_5_2;
+  made.one_by_divisor_6_2 = one_by_divisor_6_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(hexaglide_machine *)machine = made;
   return SOFTKIN_OK;
@@ -1791,6 +2107,7 @@ const softkin_mechanism hexaglide_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .start_at = start_at,
     .forward_from = find_forward_from,
 };
@@ -1859,6 +2176,17 @@ softkin_status hexaglide_branches(const hexaglide_machine *machine, const softki
 softkin_status hexaglide_jacobian(const hexaglide_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&hexaglide_mechanism, machine, axes, rows, why);
+}
+
+softkin_status hexaglide_axis_velocities(const hexaglide_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&hexaglide_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status hexaglide_axis_accelerations(const hexaglide_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&hexaglide_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status hexaglide_singularity(const hexaglide_machine *machine, const double *axes, double *margins,

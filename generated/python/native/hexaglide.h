@@ -275,7 +275,8 @@ typedef struct {
       least_cos_plate_times_rod_length_4, least_cos_plate_times_rod_length_5,
       least_cos_plate_times_rod_length_6, one_by_platform_radius, one_by_machine_scale_squared,
       quotient_in_determinant, half_by_rod_length_1, half_by_rod_length_2, half_by_rod_length_3,
-      half_by_rod_length_4, half_by_rod_length_5, half_by_rod_length_6;
+      half_by_rod_length_4, half_by_rod_length_5, half_by_rod_length_6, one_by_divisor_1_2,
+      one_by_divisor_2_2, one_by_divisor_3_2, one_by_divisor_4_2, one_by_divisor_5_2, one_by_divisor_6_2;
   bool check_forward;
 } hexaglide_machine;
 
@@ -351,6 +352,15 @@ softkin_status hexaglide_jacobian_from(const hexaglide_machine *machine, const d
     const softkin_frame *start, double *rows, softkin_refusal *why);
 softkin_status hexaglide_singularity_from(const hexaglide_machine *machine, const double *axes,
     const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 6 numbers, rows as in the Jacobian. */
+softkin_status hexaglide_axis_velocities(const hexaglide_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 6 numbers, at the velocities that the axes have.
+ * */
+softkin_status hexaglide_axis_accelerations(const hexaglide_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 7 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status hexaglide_singularity(const hexaglide_machine *machine, const double *axes, double *margins,

@@ -1129,6 +1129,309 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const hexapod_machine *k = machine;
+  const double axis_l1 = axes[0], axis_l2 = axes[1], axis_l3 = axes[2], axis_l4 = axes[3], axis_l5 = axes[4],
+      axis_l6 = axes[5], speed_l1 = speeds[0], speed_l2 = speeds[1], speed_l3 = speeds[2],
+      speed_l4 = speeds[3], speed_l5 = speeds[4], speed_l6 = speeds[5];
+  if (!softkin_are_reasonable((const double[]){speed_l1, speed_l2, speed_l3, speed_l4, speed_l5, speed_l6,
+      axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k->start_x, k->start_y, k->start_z}, 15)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  /* pose of the platform, by Newton's method from the start */
+  double results[49];
+  const double arguments[] = {axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, k->start_r11,
+      k->start_r12, k->start_r13, k->start_r21, k->start_r22, k->start_r23, k->start_r31, k->start_r32,
+      k->start_r33, k->start_x, k->start_y, k->start_z};
+  const softkin_status status = find_platform(k, arguments, results, why);
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  const double found_x = results[0], found_y = results[1], found_z = results[2], found_r11 = results[3],
+      found_r12 = results[4], found_r13 = results[5], found_r21 = results[6], found_r22 = results[7],
+      found_r23 = results[8], found_r31 = results[9], found_r32 = results[10], found_r33 = results[11],
+      determinant = results[12];
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > 2e-12)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double arm_1_x = found_r11*k->platform_1_x + found_r12*k->platform_1_y + found_r13*k->platform_1_z;
+  /* leg 1: vector from its joint on the base to its joint on the platform */
+  const double span_1_x = arm_1_x + found_x - k->base_1_x;
+  const double l1 = axis_l1 - k->offset_l1;
+  /* leg 1 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_1 = l1 > k->machine_scale_times_shortest_link ? l1 : 1.0;
+  const double one_by_l1 = 1.0/divisor_1;
+  const double along_1_x = one_by_l1*span_1_x;
+  const double arm_1_y = found_r21*k->platform_1_x + found_r22*k->platform_1_y + found_r23*k->platform_1_z;
+  const double span_1_y = arm_1_y + found_y - k->base_1_y;
+  const double along_1_y = one_by_l1*span_1_y;
+  const double arm_1_z = found_r31*k->platform_1_x + found_r32*k->platform_1_y + found_r33*k->platform_1_z;
+  const double span_1_z = arm_1_z + found_z - k->base_1_z;
+  const double along_1_z = one_by_l1*span_1_z;
+  const double moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)*k->one_by_platform_radius;
+  const double moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)*k->one_by_platform_radius;
+  const double moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*k->one_by_platform_radius;
+  const double arm_2_x = found_r11*k->platform_2_x + found_r12*k->platform_2_y + found_r13*k->platform_2_z;
+  /* leg 2: vector from its joint on the base to its joint on the platform */
+  const double span_2_x = arm_2_x + found_x - k->base_2_x;
+  const double l2 = axis_l2 - k->offset_l2;
+  /* leg 2 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_2 = l2 > k->machine_scale_times_shortest_link ? l2 : 1.0;
+  const double one_by_l2 = 1.0/divisor_2;
+  const double along_2_x = one_by_l2*span_2_x;
+  const double arm_2_y = found_r21*k->platform_2_x + found_r22*k->platform_2_y + found_r23*k->platform_2_z;
+  const double span_2_y = arm_2_y + found_y - k->base_2_y;
+  const double along_2_y = one_by_l2*span_2_y;
+  const double arm_2_z = found_r31*k->platform_2_x + found_r32*k->platform_2_y + found_r33*k->platform_2_z;
+  const double span_2_z = arm_2_z + found_z - k->base_2_z;
+  const double along_2_z = one_by_l2*span_2_z;
+  const double moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)*k->one_by_platform_radius;
+  const double moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)*k->one_by_platform_radius;
+  const double moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*k->one_by_platform_radius;
+  const double arm_3_x = found_r11*k->platform_3_x + found_r12*k->platform_3_y + found_r13*k->platform_3_z;
+  /* leg 3: vector from its joint on the base to its joint on the platform */
+  const double span_3_x = arm_3_x + found_x - k->base_3_x;
+  const double l3 = axis_l3 - k->offset_l3;
+  /* leg 3 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_3 = l3 > k->machine_scale_times_shortest_link ? l3 : 1.0;
+  const double one_by_l3 = 1.0/divisor_3;
+  const double along_3_x = one_by_l3*span_3_x;
+  const double arm_3_y = found_r21*k->platform_3_x + found_r22*k->platform_3_y + found_r23*k->platform_3_z;
+  const double span_3_y = arm_3_y + found_y - k->base_3_y;
+  const double along_3_y = one_by_l3*span_3_y;
+  const double arm_3_z = found_r31*k->platform_3_x + found_r32*k->platform_3_y + found_r33*k->platform_3_z;
+  const double span_3_z = arm_3_z + found_z - k->base_3_z;
+  const double along_3_z = one_by_l3*span_3_z;
+  const double moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)*k->one_by_platform_radius;
+  const double moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)*k->one_by_platform_radius;
+  const double moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*k->one_by_platform_radius;
+  const double arm_4_x = found_r11*k->platform_4_x + found_r12*k->platform_4_y + found_r13*k->platform_4_z;
+  /* leg 4: vector from its joint on the base to its joint on the platform */
+  const double span_4_x = arm_4_x + found_x - k->base_4_x;
+  const double l4 = axis_l4 - k->offset_l4;
+  /* leg 4 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_4 = l4 > k->machine_scale_times_shortest_link ? l4 : 1.0;
+  const double one_by_l4 = 1.0/divisor_4;
+  const double along_4_x = one_by_l4*span_4_x;
+  const double arm_4_y = found_r21*k->platform_4_x + found_r22*k->platform_4_y + found_r23*k->platform_4_z;
+  const double span_4_y = arm_4_y + found_y - k->base_4_y;
+  const double along_4_y = one_by_l4*span_4_y;
+  const double arm_4_z = found_r31*k->platform_4_x + found_r32*k->platform_4_y + found_r33*k->platform_4_z;
+  const double span_4_z = arm_4_z + found_z - k->base_4_z;
+  const double along_4_z = one_by_l4*span_4_z;
+  const double moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)*k->one_by_platform_radius;
+  const double moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)*k->one_by_platform_radius;
+  const double moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)*k->one_by_platform_radius;
+  const double arm_5_x = found_r11*k->platform_5_x + found_r12*k->platform_5_y + found_r13*k->platform_5_z;
+  /* leg 5: vector from its joint on the base to its joint on the platform */
+  const double span_5_x = arm_5_x + found_x - k->base_5_x;
+  const double l5 = axis_l5 - k->offset_l5;
+  /* leg 5 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_5 = l5 > k->machine_scale_times_shortest_link ? l5 : 1.0;
+  const double one_by_l5 = 1.0/divisor_5;
+  const double along_5_x = one_by_l5*span_5_x;
+  const double arm_5_y = found_r21*k->platform_5_x + found_r22*k->platform_5_y + found_r23*k->platform_5_z;
+  const double span_5_y = arm_5_y + found_y - k->base_5_y;
+  const double along_5_y = one_by_l5*span_5_y;
+  const double arm_5_z = found_r31*k->platform_5_x + found_r32*k->platform_5_y + found_r33*k->platform_5_z;
+  const double span_5_z = arm_5_z + found_z - k->base_5_z;
+  const double along_5_z = one_by_l5*span_5_z;
+  const double moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)*k->one_by_platform_radius;
+  const double moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)*k->one_by_platform_radius;
+  const double moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)*k->one_by_platform_radius;
+  const double arm_6_x = found_r11*k->platform_6_x + found_r12*k->platform_6_y + found_r13*k->platform_6_z;
+  /* leg 6: vector from its joint on the base to its joint on the platform */
+  const double span_6_x = arm_6_x + found_x - k->base_6_x;
+  const double l6 = axis_l6 - k->offset_l6;
+  /* leg 6 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_6 = l6 > k->machine_scale_times_shortest_link ? l6 : 1.0;
+  const double one_by_l6 = 1.0/divisor_6;
+  const double along_6_x = one_by_l6*span_6_x;
+  const double arm_6_y = found_r21*k->platform_6_x + found_r22*k->platform_6_y + found_r23*k->platform_6_z;
+  const double span_6_y = arm_6_y + found_y - k->base_6_y;
+  const double along_6_y = one_by_l6*span_6_y;
+  const double arm_6_z = found_r31*k->platform_6_x + found_r32*k->platform_6_y + found_r33*k->platform_6_z;
+  const double span_6_z = arm_6_z + found_z - k->base_6_z;
+  const double along_6_z = one_by_l6*span_6_z;
+  const double moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)*k->one_by_platform_radius;
+  const double moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)*k->one_by_platform_radius;
+  const double moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)*k->one_by_platform_radius;
+  /* twist of the platform per velocity of each axis */
+  double system[6][7] = {{along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z, speed_l1},
+      {along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z, speed_l2},
+      {along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, speed_l3},
+      {along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z, speed_l4},
+      {along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z, speed_l5},
+      {along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z, speed_l6}};
+  softkin_solve(&system[0][0], 6, 1);
+  const double column_1_vx = system[0][6], column_1_vy = system[1][6], column_1_vz = system[2][6],
+      column_1_wx = system[3][6], column_1_wy = system[4][6], column_1_wz = system[5][6];
+  const double product_in_rate_of_arm_1_x = (column_1_wy*found_r33 - column_1_wz*found_r23)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_x_2 = (column_1_wy*found_r32 - column_1_wz*found_r22)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_x_3 = (column_1_wy*found_r31 - column_1_wz*found_r21)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_x = k->platform_1_x*product_in_rate_of_arm_1_x_3
+      + k->platform_1_y*product_in_rate_of_arm_1_x_2 + k->platform_1_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_1_x = column_1_vx + rate_of_arm_1_x;
+  const double speed_l1_times_one_by_l1 = one_by_l1*speed_l1;
+  const double rate_of_along_1_x = one_by_l1*(rate_of_span_1_x - span_1_x*speed_l1_times_one_by_l1);
+  const double product_in_rate_of_arm_1_y = (column_1_wz*found_r13 - column_1_wx*found_r33)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_y_2 = (column_1_wz*found_r12 - column_1_wx*found_r32)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_y_3 = (column_1_wz*found_r11 - column_1_wx*found_r31)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_y = k->platform_1_x*product_in_rate_of_arm_1_y_3
+      + k->platform_1_y*product_in_rate_of_arm_1_y_2 + k->platform_1_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_1_y = column_1_vy + rate_of_arm_1_y;
+  const double rate_of_along_1_y = one_by_l1*(rate_of_span_1_y - span_1_y*speed_l1_times_one_by_l1);
+  const double product_in_rate_of_arm_1_z = (column_1_wx*found_r23 - column_1_wy*found_r13)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_z_2 = (column_1_wx*found_r22 - column_1_wy*found_r12)
+      *k->one_by_platform_radius;
+  const double product_in_rate_of_arm_1_z_3 = (column_1_wx*found_r21 - column_1_wy*found_r11)
+      *k->one_by_platform_radius;
+  const double rate_of_arm_1_z = k->platform_1_x*product_in_rate_of_arm_1_z_3
+      + k->platform_1_y*product_in_rate_of_arm_1_z_2 + k->platform_1_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_1_z = column_1_vz + rate_of_arm_1_z;
+  const double rate_of_along_1_z = one_by_l1*(rate_of_span_1_z - span_1_z*speed_l1_times_one_by_l1);
+  const double rate_of_moment_1_x = (along_1_z*rate_of_arm_1_y + arm_1_y*rate_of_along_1_z
+      - along_1_y*rate_of_arm_1_z - arm_1_z*rate_of_along_1_y)*k->one_by_platform_radius;
+  const double rate_of_moment_1_y = (along_1_x*rate_of_arm_1_z + arm_1_z*rate_of_along_1_x
+      - along_1_z*rate_of_arm_1_x - arm_1_x*rate_of_along_1_z)*k->one_by_platform_radius;
+  const double rate_of_moment_1_z = (along_1_y*rate_of_arm_1_x + arm_1_x*rate_of_along_1_y
+      - along_1_x*rate_of_arm_1_y - arm_1_y*rate_of_along_1_x)*k->one_by_platform_radius;
+  const double rate_of_arm_2_x = k->platform_2_x*product_in_rate_of_arm_1_x_3
+      + k->platform_2_y*product_in_rate_of_arm_1_x_2 + k->platform_2_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_2_x = column_1_vx + rate_of_arm_2_x;
+  const double speed_l2_times_one_by_l2 = one_by_l2*speed_l2;
+  const double rate_of_along_2_x = one_by_l2*(rate_of_span_2_x - span_2_x*speed_l2_times_one_by_l2);
+  const double rate_of_arm_2_y = k->platform_2_x*product_in_rate_of_arm_1_y_3
+      + k->platform_2_y*product_in_rate_of_arm_1_y_2 + k->platform_2_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_2_y = column_1_vy + rate_of_arm_2_y;
+  const double rate_of_along_2_y = one_by_l2*(rate_of_span_2_y - span_2_y*speed_l2_times_one_by_l2);
+  const double rate_of_arm_2_z = k->platform_2_x*product_in_rate_of_arm_1_z_3
+      + k->platform_2_y*product_in_rate_of_arm_1_z_2 + k->platform_2_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_2_z = column_1_vz + rate_of_arm_2_z;
+  const double rate_of_along_2_z = one_by_l2*(rate_of_span_2_z - span_2_z*speed_l2_times_one_by_l2);
+  const double rate_of_moment_2_x = (along_2_z*rate_of_arm_2_y + arm_2_y*rate_of_along_2_z
+      - along_2_y*rate_of_arm_2_z - arm_2_z*rate_of_along_2_y)*k->one_by_platform_radius;
+  const double rate_of_moment_2_y = (along_2_x*rate_of_arm_2_z + arm_2_z*rate_of_along_2_x
+      - along_2_z*rate_of_arm_2_x - arm_2_x*rate_of_along_2_z)*k->one_by_platform_radius;
+  const double rate_of_moment_2_z = (along_2_y*rate_of_arm_2_x + arm_2_x*rate_of_along_2_y
+      - along_2_x*rate_of_arm_2_y - arm_2_y*rate_of_along_2_x)*k->one_by_platform_radius;
+  const double rate_of_arm_3_x = k->platform_3_x*product_in_rate_of_arm_1_x_3
+      + k->platform_3_y*product_in_rate_of_arm_1_x_2 + k->platform_3_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_3_x = column_1_vx + rate_of_arm_3_x;
+  const double speed_l3_times_one_by_l3 = one_by_l3*speed_l3;
+  const double rate_of_along_3_x = one_by_l3*(rate_of_span_3_x - span_3_x*speed_l3_times_one_by_l3);
+  const double rate_of_arm_3_y = k->platform_3_x*product_in_rate_of_arm_1_y_3
+      + k->platform_3_y*product_in_rate_of_arm_1_y_2 + k->platform_3_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_3_y = column_1_vy + rate_of_arm_3_y;
+  const double rate_of_along_3_y = one_by_l3*(rate_of_span_3_y - span_3_y*speed_l3_times_one_by_l3);
+  const double rate_of_arm_3_z = k->platform_3_x*product_in_rate_of_arm_1_z_3
+      + k->platform_3_y*product_in_rate_of_arm_1_z_2 + k->platform_3_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_3_z = column_1_vz + rate_of_arm_3_z;
+  const double rate_of_along_3_z = one_by_l3*(rate_of_span_3_z - span_3_z*speed_l3_times_one_by_l3);
+  const double rate_of_moment_3_x = (along_3_z*rate_of_arm_3_y + arm_3_y*rate_of_along_3_z
+      - along_3_y*rate_of_arm_3_z - arm_3_z*rate_of_along_3_y)*k->one_by_platform_radius;
+  const double rate_of_moment_3_y = (along_3_x*rate_of_arm_3_z + arm_3_z*rate_of_along_3_x
+      - along_3_z*rate_of_arm_3_x - arm_3_x*rate_of_along_3_z)*k->one_by_platform_radius;
+  const double rate_of_moment_3_z = (along_3_y*rate_of_arm_3_x + arm_3_x*rate_of_along_3_y
+      - along_3_x*rate_of_arm_3_y - arm_3_y*rate_of_along_3_x)*k->one_by_platform_radius;
+  const double rate_of_arm_4_x = k->platform_4_x*product_in_rate_of_arm_1_x_3
+      + k->platform_4_y*product_in_rate_of_arm_1_x_2 + k->platform_4_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_4_x = column_1_vx + rate_of_arm_4_x;
+  const double speed_l4_times_one_by_l4 = one_by_l4*speed_l4;
+  const double rate_of_along_4_x = one_by_l4*(rate_of_span_4_x - span_4_x*speed_l4_times_one_by_l4);
+  const double rate_of_arm_4_y = k->platform_4_x*product_in_rate_of_arm_1_y_3
+      + k->platform_4_y*product_in_rate_of_arm_1_y_2 + k->platform_4_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_4_y = column_1_vy + rate_of_arm_4_y;
+  const double rate_of_along_4_y = one_by_l4*(rate_of_span_4_y - span_4_y*speed_l4_times_one_by_l4);
+  const double rate_of_arm_4_z = k->platform_4_x*product_in_rate_of_arm_1_z_3
+      + k->platform_4_y*product_in_rate_of_arm_1_z_2 + k->platform_4_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_4_z = column_1_vz + rate_of_arm_4_z;
+  const double rate_of_along_4_z = one_by_l4*(rate_of_span_4_z - span_4_z*speed_l4_times_one_by_l4);
+  const double rate_of_moment_4_x = (along_4_z*rate_of_arm_4_y + arm_4_y*rate_of_along_4_z
+      - along_4_y*rate_of_arm_4_z - arm_4_z*rate_of_along_4_y)*k->one_by_platform_radius;
+  const double rate_of_moment_4_y = (along_4_x*rate_of_arm_4_z + arm_4_z*rate_of_along_4_x
+      - along_4_z*rate_of_arm_4_x - arm_4_x*rate_of_along_4_z)*k->one_by_platform_radius;
+  const double rate_of_moment_4_z = (along_4_y*rate_of_arm_4_x + arm_4_x*rate_of_along_4_y
+      - along_4_x*rate_of_arm_4_y - arm_4_y*rate_of_along_4_x)*k->one_by_platform_radius;
+  const double rate_of_arm_5_x = k->platform_5_x*product_in_rate_of_arm_1_x_3
+      + k->platform_5_y*product_in_rate_of_arm_1_x_2 + k->platform_5_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_5_x = column_1_vx + rate_of_arm_5_x;
+  const double speed_l5_times_one_by_l5 = one_by_l5*speed_l5;
+  const double rate_of_along_5_x = one_by_l5*(rate_of_span_5_x - span_5_x*speed_l5_times_one_by_l5);
+  const double rate_of_arm_5_y = k->platform_5_x*product_in_rate_of_arm_1_y_3
+      + k->platform_5_y*product_in_rate_of_arm_1_y_2 + k->platform_5_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_5_y = column_1_vy + rate_of_arm_5_y;
+  const double rate_of_along_5_y = one_by_l5*(rate_of_span_5_y - span_5_y*speed_l5_times_one_by_l5);
+  const double rate_of_arm_5_z = k->platform_5_x*product_in_rate_of_arm_1_z_3
+      + k->platform_5_y*product_in_rate_of_arm_1_z_2 + k->platform_5_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_5_z = column_1_vz + rate_of_arm_5_z;
+  const double rate_of_along_5_z = one_by_l5*(rate_of_span_5_z - span_5_z*speed_l5_times_one_by_l5);
+  const double rate_of_moment_5_x = (along_5_z*rate_of_arm_5_y + arm_5_y*rate_of_along_5_z
+      - along_5_y*rate_of_arm_5_z - arm_5_z*rate_of_along_5_y)*k->one_by_platform_radius;
+  const double rate_of_moment_5_y = (along_5_x*rate_of_arm_5_z + arm_5_z*rate_of_along_5_x
+      - along_5_z*rate_of_arm_5_x - arm_5_x*rate_of_along_5_z)*k->one_by_platform_radius;
+  const double rate_of_moment_5_z = (along_5_y*rate_of_arm_5_x + arm_5_x*rate_of_along_5_y
+      - along_5_x*rate_of_arm_5_y - arm_5_y*rate_of_along_5_x)*k->one_by_platform_radius;
+  const double rate_of_arm_6_x = k->platform_6_x*product_in_rate_of_arm_1_x_3
+      + k->platform_6_y*product_in_rate_of_arm_1_x_2 + k->platform_6_z*product_in_rate_of_arm_1_x;
+  const double rate_of_span_6_x = column_1_vx + rate_of_arm_6_x;
+  const double speed_l6_times_one_by_l6 = one_by_l6*speed_l6;
+  const double rate_of_along_6_x = one_by_l6*(rate_of_span_6_x - span_6_x*speed_l6_times_one_by_l6);
+  const double rate_of_arm_6_y = k->platform_6_x*product_in_rate_of_arm_1_y_3
+      + k->platform_6_y*product_in_rate_of_arm_1_y_2 + k->platform_6_z*product_in_rate_of_arm_1_y;
+  const double rate_of_span_6_y = column_1_vy + rate_of_arm_6_y;
+  const double rate_of_along_6_y = one_by_l6*(rate_of_span_6_y - span_6_y*speed_l6_times_one_by_l6);
+  const double rate_of_arm_6_z = k->platform_6_x*product_in_rate_of_arm_1_z_3
+      + k->platform_6_y*product_in_rate_of_arm_1_z_2 + k->platform_6_z*product_in_rate_of_arm_1_z;
+  const double rate_of_span_6_z = column_1_vz + rate_of_arm_6_z;
+  const double rate_of_along_6_z = one_by_l6*(rate_of_span_6_z - span_6_z*speed_l6_times_one_by_l6);
+  const double rate_of_moment_6_x = (along_6_z*rate_of_arm_6_y + arm_6_y*rate_of_along_6_z
+      - along_6_y*rate_of_arm_6_z - arm_6_z*rate_of_along_6_y)*k->one_by_platform_radius;
+  const double rate_of_moment_6_y = (along_6_x*rate_of_arm_6_z + arm_6_z*rate_of_along_6_x
+      - along_6_z*rate_of_arm_6_x - arm_6_x*rate_of_along_6_z)*k->one_by_platform_radius;
+  const double rate_of_moment_6_z = (along_6_y*rate_of_arm_6_x + arm_6_x*rate_of_along_6_y
+      - along_6_x*rate_of_arm_6_y - arm_6_y*rate_of_along_6_x)*k->one_by_platform_radius;
+  double system_of_2[6][7] = {{along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z,
+      -column_1_vx*rate_of_along_1_x - column_1_vy*rate_of_along_1_y - column_1_vz*rate_of_along_1_z
+      - column_1_wx*rate_of_moment_1_x - column_1_wy*rate_of_moment_1_y - column_1_wz*rate_of_moment_1_z},
+      {along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+      -column_1_vx*rate_of_along_2_x - column_1_vy*rate_of_along_2_y - column_1_vz*rate_of_along_2_z
+      - column_1_wx*rate_of_moment_2_x - column_1_wy*rate_of_moment_2_y - column_1_wz*rate_of_moment_2_z},
+      {along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z,
+      -column_1_vx*rate_of_along_3_x - column_1_vy*rate_of_along_3_y - column_1_vz*rate_of_along_3_z
+      - column_1_wx*rate_of_moment_3_x - column_1_wy*rate_of_moment_3_y - column_1_wz*rate_of_moment_3_z},
+      {along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z,
+      -column_1_vx*rate_of_along_4_x - column_1_vy*rate_of_along_4_y - column_1_vz*rate_of_along_4_z
+      - column_1_wx*rate_of_moment_4_x - column_1_wy*rate_of_moment_4_y - column_1_wz*rate_of_moment_4_z},
+      {along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
+      -column_1_vx*rate_of_along_5_x - column_1_vy*rate_of_along_5_y - column_1_vz*rate_of_along_5_z
+      - column_1_wx*rate_of_moment_5_x - column_1_wy*rate_of_moment_5_y - column_1_wz*rate_of_moment_5_z},
+      {along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+      -column_1_vx*rate_of_along_6_x - column_1_vy*rate_of_along_6_y - column_1_vz*rate_of_along_6_z
+      - column_1_wx*rate_of_moment_6_x - column_1_wy*rate_of_moment_6_y - column_1_wz*rate_of_moment_6_z}};
+  softkin_solve(&system_of_2[0][0], 6, 1);
+  const double rate_of_column_1_vx = system_of_2[0][6], rate_of_column_1_vy = system_of_2[1][6],
+      rate_of_column_1_vz = system_of_2[2][6], rate_of_column_1_wx = system_of_2[3][6],
+      rate_of_column_1_wy = system_of_2[4][6], rate_of_column_1_wz = system_of_2[5][6];
+  accelerations[0] = rate_of_column_1_vx;
+  accelerations[1] = rate_of_column_1_vy;
+  accelerations[2] = rate_of_column_1_vz;
+  accelerations[3] = k->one_by_platform_radius*rate_of_column_1_wx;
+  accelerations[4] = k->one_by_platform_radius*rate_of_column_1_wy;
+  accelerations[5] = k->one_by_platform_radius*rate_of_column_1_wz;
+  return SOFTKIN_OK;
+}
+
 /* The machine with another start of forward kinematics. */
 static void start_at(const void *machine, const softkin_frame *start, void *moved) {
   hexapod_machine *k = moved;
@@ -1545,6 +1848,7 @@ const softkin_mechanism hexapod_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .start_at = start_at,
     .forward_from = find_forward_from,
 };
@@ -1613,6 +1917,17 @@ softkin_status hexapod_branches(const hexapod_machine *machine, const softkin_fr
 softkin_status hexapod_jacobian(const hexapod_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&hexapod_mechanism, machine, axes, rows, why);
+}
+
+softkin_status hexapod_axis_velocities(const hexapod_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&hexapod_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status hexapod_axis_accelerations(const hexapod_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&hexapod_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status hexapod_singularity(const hexapod_machine *machine, const double *axes, double *margins,

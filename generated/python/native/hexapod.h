@@ -342,6 +342,15 @@ softkin_status hexapod_jacobian_from(const hexapod_machine *machine, const doubl
 softkin_status hexapod_singularity_from(const hexapod_machine *machine, const double *axes,
     const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 6 numbers, rows as in the Jacobian. */
+softkin_status hexapod_axis_velocities(const hexapod_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 6 numbers, at the velocities that the axes have.
+ * */
+softkin_status hexapod_axis_accelerations(const hexapod_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status hexapod_singularity(const hexapod_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

@@ -345,6 +345,64 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const kin_5axes_machine *k = machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], axis_a = axes[3], axis_b = axes[4],
+      speed_x = speeds[0], speed_y = speeds[1], speed_z = speeds[2], speed_a = speeds[3], speed_b = speeds[4];
+  if (!softkin_are_reasonable((const double[]){speed_a, speed_b, speed_x, speed_y, speed_z, axis_a, axis_b,
+      axis_x, axis_y, axis_z}, 10)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a = SOFTKIN_DEGREE*(axis_a - k->offset_a);
+  const double cos_a = cos(a);
+  const double sin_a = sin(a);
+  const double rate_of_sin_a = speed_a*cos_a;
+  const double rate_of_cos_a = -speed_a*sin_a;
+  const double joint_y = axis_y - k->offset_y;
+  const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
+  const double sin_b = sin(b);
+  const double sin_b_times_tool_side = k->tool_side*sin_b;
+  const double r23_at_b = sin_a*sin_b_times_tool_side;
+  const double y = joint_y + r23_at_b*k->tool_length_times_tool_side;
+  const double joint_x = axis_x - k->offset_x;
+  const double r13_at_b = cos_a*sin_b_times_tool_side;
+  const double x = joint_x + r13_at_b*k->tool_length_times_tool_side;
+  const double cos_b = cos(b);
+  const double r11_at_b = cos_a*cos_b;
+  const double r21_at_b = cos_b*sin_a;
+  const double rate_of_sin_b = speed_b*cos_b;
+  const double rate_of_r31_at_b = -rate_of_sin_b*k->tool_side;
+  const double rate_of_cos_b = -speed_b*sin_b;
+  const double rate_of_r11_at_b = rate_of_cos_b*cos_a + rate_of_cos_a*cos_b;
+  const double rate_of_r21_at_b = rate_of_sin_a*cos_b + rate_of_cos_b*sin_a;
+  const double joint_z = axis_z - k->offset_z;
+  const double z = joint_z + k->tool_length_times_tool_side*cos_b;
+  const double z_minus_joint_z = z - joint_z;
+  const double rate_of_z = speed_z + rate_of_cos_b*k->tool_length_times_tool_side;
+  const double rate_of_z_minus_speed_z = rate_of_z - speed_z;
+  const double rate_of_r23_at_b = (rate_of_sin_a*sin_b + rate_of_sin_b*sin_a)*k->tool_side;
+  const double rate_of_y = speed_y + rate_of_r23_at_b*k->tool_length_times_tool_side;
+  const double speed_y_minus_rate_of_y = speed_y - rate_of_y;
+  const double rate_of_r13_at_b = k->tool_side*(rate_of_sin_b*cos_a + rate_of_cos_a*sin_b);
+  const double rate_of_x = speed_x + rate_of_r13_at_b*k->tool_length_times_tool_side;
+  const double rate_of_x_minus_speed_x = rate_of_x - speed_x;
+  const double tool_side_times_speed_b = speed_b*k->tool_side;
+  accelerations[0] = speed_a*speed_y_minus_rate_of_y
+      + tool_side_times_speed_b*(rate_of_z_minus_speed_z*cos_a + rate_of_cos_a*z_minus_joint_z);
+  accelerations[1] = rate_of_x_minus_speed_x*speed_a
+      + (rate_of_sin_a*z_minus_joint_z + rate_of_z_minus_speed_z*sin_a)*tool_side_times_speed_b;
+  accelerations[2] = ((joint_x - x)*rate_of_cos_a + (joint_y - y)*rate_of_sin_a
+      + speed_y_minus_rate_of_y*sin_a - rate_of_x_minus_speed_x*cos_a)*tool_side_times_speed_b;
+  accelerations[3] = rate_of_r31_at_b*speed_a
+      + tool_side_times_speed_b*(rate_of_r21_at_b*cos_a + r21_at_b*rate_of_cos_a - r11_at_b*rate_of_sin_a
+      - rate_of_r11_at_b*sin_a);
+  accelerations[4] = 2.0*rate_of_sin_a*tool_side_times_speed_b*sin_a
+      + rate_of_cos_a*speed_b*k->twice_tool_side*cos_a;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -442,6 +500,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   const double tool_length_times_tool_side = (int)p->tool_side*p->tool_length;
   const double one_by_tool_side = 1.0/(int)p->tool_side;
+  const double twice_tool_side = 2.0*(int)p->tool_side;
   made.lowest_x = window_of_x.lowest;
   made.highest_x = window_of_x.highest;
   made.lowest_y = window_of_y.lowest;
@@ -465,6 +524,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_b = p->offset_b;
   made.tool_length_times_tool_side = tool_length_times_tool_side;
   made.one_by_tool_side = one_by_tool_side;
+  made.twice_tool_side = twice_tool_side;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(kin_5axes_machine *)machine = made;
   return SOFTKIN_OK;
@@ -503,6 +563,7 @@ const softkin_mechanism kin_5axes_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -545,6 +606,17 @@ softkin_status kin_5axes_branches(const kin_5axes_machine *machine, const softki
 softkin_status kin_5axes_jacobian(const kin_5axes_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&kin_5axes_mechanism, machine, axes, rows, why);
+}
+
+softkin_status kin_5axes_axis_velocities(const kin_5axes_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&kin_5axes_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status kin_5axes_axis_accelerations(const kin_5axes_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&kin_5axes_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status kin_5axes_singularity(const kin_5axes_machine *machine, const double *axes, double *margins,

@@ -87,7 +87,7 @@ typedef struct {
   softkin_ends ends[KIN_5AXES_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_a, highest_a, mid_a, lowest_b,
       highest_b, mid_b, tool_length, tool_side, offset_x, offset_y, offset_z, offset_a, offset_b,
-      tool_length_times_tool_side, one_by_tool_side;
+      tool_length_times_tool_side, one_by_tool_side, twice_tool_side;
   bool single_a, single_b;
 } kin_5axes_machine;
 
@@ -149,6 +149,15 @@ softkin_status kin_5axes_branches(const kin_5axes_machine *machine, const softki
 /** The Jacobian, per radian: 5 rows of 5. */
 softkin_status kin_5axes_jacobian(const kin_5axes_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 5 numbers, rows as in the Jacobian. */
+softkin_status kin_5axes_axis_velocities(const kin_5axes_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 5 numbers, at the velocities that the axes have.
+ * */
+softkin_status kin_5axes_axis_accelerations(const kin_5axes_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status kin_5axes_singularity(const kin_5axes_machine *machine, const double *axes, double *margins,

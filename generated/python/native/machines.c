@@ -14,6 +14,7 @@
 #include "delta_c.h"
 #include "delta_p3c_type3.h"
 #include "dualscara.h"
+#include "excavator.h"
 #include "gantry2.h"
 #include "gantry3.h"
 #include "gantrycutter2.h"
@@ -41,6 +42,7 @@
 #include "polar.h"
 #include "polar_z.h"
 #include "pos_rrr.h"
+#include "rodpalletizer.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -50,6 +52,8 @@
 #include "scara4_zccoupled_type1.h"
 #include "scaraonrail.h"
 #include "sccc.h"
+#include "scissorlift.h"
+#include "skewgantry3.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -78,6 +82,8 @@ softkin_regular delta_p3c_type3_regular;
 softkin_regular_all delta_p3c_type3_regular_all;
 softkin_regular dualscara_regular;
 softkin_regular_all dualscara_regular_all;
+softkin_regular excavator_regular;
+softkin_regular_all excavator_regular_all;
 softkin_regular gantry2_regular;
 softkin_regular gantry3_regular;
 softkin_regular gantrycutter2_regular;
@@ -132,6 +138,8 @@ softkin_regular scara4_zccoupled_type1_regular;
 softkin_regular_all scara4_zccoupled_type1_regular_all;
 softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
+softkin_regular scissorlift_regular;
+softkin_regular skewgantry3_regular;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -151,79 +159,83 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 476710dd8035783c", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel a721580085cf1d29", &ac6_threeparallel_mechanism,
+    {"ac6_rzryryrxryrz_j6offset f4d0abcee072b5eb", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_threeparallel 7dfa04a432bd0f6c", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
-    {"ac6_txtytzryrxrz 7390998e7fbd1633", &ac6_txtytzryrxrz_mechanism,
+    {"ac6_txtytzryrxrz 5a4e37cb31d75fcd", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof 4ae5258f61d7ca33", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof c12a61cf78d2bd96", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
-    {"bipod_rotary b59b584466428d5c", &bipod_rotary_mechanism,
+    {"bipod_rotary 2fee8fd2d0b50352", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
-    {"caxis 4e3481611b22e53d", &caxis_mechanism, {caxis_regular, NULL}},
-    {"caxis_tool 9fd437ba99b2762d", &caxis_tool_mechanism, {caxis_tool_regular, NULL}},
-    {"crane e011de7958397cda", &crane_mechanism, {NULL, NULL}},
-    {"delta_c 40a517099f488433", &delta_c_mechanism, {delta_c_regular, delta_c_regular_all}},
-    {"delta_p3c_type3 a4e0e109f9346d6d", &delta_p3c_type3_mechanism,
+    {"caxis 6aff182d3865f2af", &caxis_mechanism, {caxis_regular, NULL}},
+    {"caxis_tool 11e28e07443f80e4", &caxis_tool_mechanism, {caxis_tool_regular, NULL}},
+    {"crane e2396431da69793e", &crane_mechanism, {NULL, NULL}},
+    {"delta_c ec39d85fe1084191", &delta_c_mechanism, {delta_c_regular, delta_c_regular_all}},
+    {"delta_p3c_type3 72c22f8482557c4c", &delta_p3c_type3_mechanism,
         {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
-    {"dualscara 518a05ebb26d0c73", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
-    {"gantry2 3c6edd1d7118e93d", &gantry2_mechanism, {gantry2_regular, NULL}},
-    {"gantry3 9b8635e5f566e3b6", &gantry3_mechanism, {gantry3_regular, NULL}},
-    {"gantrycutter2 5043f79761288349", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
-    {"gantrycutter3 91ad0640bfc2fd45", &gantrycutter3_mechanism, {gantrycutter3_regular, NULL}},
-    {"headhead_ca a36b01f90c6fff29", &headhead_ca_mechanism, {headhead_ca_regular, headhead_ca_regular_all}},
-    {"headhead_cb 945aa2d28ffeb377", &headhead_cb_mechanism, {headhead_cb_regular, headhead_cb_regular_all}},
-    {"headtable_ac f34ea27e13557012", &headtable_ac_mechanism,
+    {"dualscara c3dc2822c50c4395", &dualscara_mechanism, {dualscara_regular, dualscara_regular_all}},
+    {"excavator ce2e145d52c65fa5", &excavator_mechanism, {excavator_regular, excavator_regular_all}},
+    {"gantry2 8960c7905cca5734", &gantry2_mechanism, {gantry2_regular, NULL}},
+    {"gantry3 a6783d087cda363d", &gantry3_mechanism, {gantry3_regular, NULL}},
+    {"gantrycutter2 2ccfc2ee9449b221", &gantrycutter2_mechanism, {gantrycutter2_regular, NULL}},
+    {"gantrycutter3 90184d02de1f04c6", &gantrycutter3_mechanism, {gantrycutter3_regular, NULL}},
+    {"headhead_ca 170b6165c1540aef", &headhead_ca_mechanism, {headhead_ca_regular, headhead_ca_regular_all}},
+    {"headhead_cb f4a2ede2a8d7728b", &headhead_cb_mechanism, {headhead_cb_regular, headhead_cb_regular_all}},
+    {"headtable_ac 8fe4dee1416375d3", &headtable_ac_mechanism,
         {headtable_ac_regular, headtable_ac_regular_all}},
-    {"headtable_bc c3aa06731787cf95", &headtable_bc_mechanism,
+    {"headtable_bc 3e6180082d29405d", &headtable_bc_mechanism,
         {headtable_bc_regular, headtable_bc_regular_all}},
-    {"hexaglide 03c9f746a143d056", &hexaglide_mechanism, {NULL, NULL}},
-    {"hexapod a377a67679df05c5", &hexapod_mechanism, {NULL, NULL}},
-    {"hgantry2 d5e006ff3bb5fb70", &hgantry2_mechanism, {hgantry2_regular, NULL}},
-    {"hgantry3 506a63bef67aff6b", &hgantry3_mechanism, {hgantry3_regular, NULL}},
-    {"kin_5axes 6ed7d0e58bbb1a05", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
-    {"mc_kin_type_12_xy 8613d87872cad463", &mc_kin_type_12_xy_mechanism,
+    {"hexaglide b5a980eb1a2aa8b3", &hexaglide_mechanism, {NULL, NULL}},
+    {"hexapod 00ffed1d774cedee", &hexapod_mechanism, {NULL, NULL}},
+    {"hgantry2 5ea9ca9c26772a2a", &hgantry2_mechanism, {hgantry2_regular, NULL}},
+    {"hgantry3 4986579215747645", &hgantry3_mechanism, {hgantry3_regular, NULL}},
+    {"kin_5axes a6f9b998fbcf4560", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
+    {"mc_kin_type_12_xy e183bd4df5886db4", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
-    {"nutatinghead_cb 681f70785b60cbd4", &nutatinghead_cb_mechanism,
+    {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
-    {"nutatingtable_bc 9e5a88cef1e91590", &nutatingtable_bc_mechanism,
+    {"nutatingtable_bc 7fe2e8827b514731", &nutatingtable_bc_mechanism,
         {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
-    {"p2c_type1 b933ceccadc315dd", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
-    {"p2c_type2 942b57fba31e0bcb", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
-    {"p2x_type1 94c7c821c18ef4c4", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
-    {"p2x_type2 e9df9cbc459e05d1", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
-    {"p2y f699eaab88473243", &p2y_mechanism, {p2y_regular, NULL}},
-    {"palletizer b22aa2e3fca3a87d", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
-    {"pcc fc915a8e08510de0", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
-    {"planar_3rrr e5024333caf97add", &planar_3rrr_mechanism, {NULL, NULL}},
-    {"polar 7f22839a27cccfa9", &polar_mechanism, {polar_regular, NULL}},
-    {"polar_z ac9610c84473bd12", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr 5601d9cd2720ec64", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
-    {"scara2_z b37de2a39400f06c", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
-    {"scara3_ccz 33cf2d6b22d4e16b", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
-    {"scara3_z f177072bc3d7d9c6", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
-    {"scara3_zccc 411e1d64cce8dad8", &scara3_zccc_mechanism, {scara3_zccc_regular, scara3_zccc_regular_all}},
-    {"scara4_cczc_zccoupled d7a204d91788c7a4", &scara4_cczc_zccoupled_mechanism,
+    {"p2c_type1 fbcba3dc3ed70f77", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
+    {"p2c_type2 7dd2b9cd88168f65", &p2c_type2_mechanism, {p2c_type2_regular, p2c_type2_regular_all}},
+    {"p2x_type1 4470745ab5555d52", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
+    {"p2x_type2 cfb1e2e1acec7873", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
+    {"p2y 30c921779399fe62", &p2y_mechanism, {p2y_regular, NULL}},
+    {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
+    {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
+    {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
+    {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
+    {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
+    {"pos_rrr 476a397100e31d56", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
+    {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
+    {"scara3_ccz 339819f261d7e7aa", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
+    {"scara3_z 4f68cce713dae8e2", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},
+    {"scara3_zccc c69f49f4c375a73c", &scara3_zccc_mechanism, {scara3_zccc_regular, scara3_zccc_regular_all}},
+    {"scara4_cczc_zccoupled 6165650a6b3054c0", &scara4_cczc_zccoupled_mechanism,
         {scara4_cczc_zccoupled_regular, scara4_cczc_zccoupled_regular_all}},
-    {"scara4_zccc c418b750fe2ea7ae", &scara4_zccc_mechanism, {scara4_zccc_regular, scara4_zccc_regular_all}},
-    {"scara4_zccoupled_type1 a5ed80bacc15434a", &scara4_zccoupled_type1_mechanism,
+    {"scara4_zccc 43434409f0b9de6c", &scara4_zccc_mechanism, {scara4_zccc_regular, scara4_zccc_regular_all}},
+    {"scara4_zccoupled_type1 94cb2b7163ccbd2b", &scara4_zccoupled_type1_mechanism,
         {scara4_zccoupled_type1_regular, scara4_zccoupled_type1_regular_all}},
-    {"scaraonrail a59e29ec1fc13d4d", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
-    {"sccc 44de60f530721870", &sccc_mechanism, {NULL, NULL}},
-    {"tabletable_ac 6909ab958c9b1d87", &tabletable_ac_mechanism,
+    {"scaraonrail 527407bb63f491e4", &scaraonrail_mechanism, {scaraonrail_regular, scaraonrail_regular_all}},
+    {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
+    {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
+    {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
+    {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
-    {"tabletable_bc 9e35af7c68b68092", &tabletable_bc_mechanism,
+    {"tabletable_bc e52e37a34e57d5b2", &tabletable_bc_mechanism,
         {tabletable_bc_regular, tabletable_bc_regular_all}},
-    {"tgantry2 83f275af2946655f", &tgantry2_mechanism, {tgantry2_regular, NULL}},
-    {"tgantry3 ebec7448346ecd96", &tgantry3_mechanism, {tgantry3_regular, NULL}},
-    {"tool dc1763445a1b1311", &tool_mechanism, {NULL, NULL}},
-    {"transmit a571911b83232328", &transmit_mechanism, {transmit_regular, NULL}},
-    {"tripod_linear dddf88ea5aa0e6dd", &tripod_linear_mechanism,
+    {"tgantry2 00c040124fc80e54", &tgantry2_mechanism, {tgantry2_regular, NULL}},
+    {"tgantry3 cb966a3fda57e2a8", &tgantry3_mechanism, {tgantry3_regular, NULL}},
+    {"tool 877d142207057dac", &tool_mechanism, {NULL, NULL}},
+    {"transmit c72753112ba2056f", &transmit_mechanism, {transmit_regular, NULL}},
+    {"tripod_linear cac8fc2ff3ffabcb", &tripod_linear_mechanism,
         {tripod_linear_regular, tripod_linear_regular_all}},
-    {"tripod_p3z 16cef44b1a3e8642", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},
-    {"tripod_rotary 402d5839eb4e6bd1", &tripod_rotary_mechanism,
+    {"tripod_p3z 436eb3abb879140e", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},
+    {"tripod_rotary 6c9da790a9736e9f", &tripod_rotary_mechanism,
         {tripod_rotary_regular, tripod_rotary_regular_all}},
-    {"wrist2 10b9cd4ebc03c431", &wrist2_mechanism, {wrist2_regular, wrist2_regular_all}},
-    {"wrist3 a78696a8aebed404", &wrist3_mechanism, {wrist3_regular, wrist3_regular_all}},
+    {"wrist2 23dde73c938515d9", &wrist2_mechanism, {wrist2_regular, wrist2_regular_all}},
+    {"wrist3 99cd6d8df5994054", &wrist3_mechanism, {wrist3_regular, wrist3_regular_all}},
     {NULL, NULL, {NULL, NULL}},
 };

@@ -552,6 +552,199 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const mc_kin_type_12_xy_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double sin_a1 = sin(a1);
+  const double pivot_upper_x = -k->link_length_1*sin_a1; /* rod upper: centre about which it swings */
+  const double cos_a1 = cos(a1);
+  const double pivot_upper_y = -k->link_length_1*cos_a1;
+  double centre_1_x, centre_1_y;
+  if (k->swap_xy) {
+    centre_1_x = pivot_upper_y;
+    centre_1_y = pivot_upper_x;
+  } else {
+    centre_1_x = pivot_upper_x;
+    centre_1_y = pivot_upper_y;
+  }
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double cos_a2 = cos(a2);
+  const double cos_a2_times_link_length_5 = k->link_length_5*cos_a2;
+  /* rod rear: centre about which it swings */
+  const double pivot_rear_x = k->sum_in_pivot_rear_x*sin_a1 - cos_a2_times_link_length_5;
+  const double sin_a2 = sin(a2);
+  const double link_length_5_times_sin_a2 = k->link_length_5*sin_a2;
+  const double pivot_rear_y = link_length_5_times_sin_a2 + k->sum_in_pivot_rear_x*cos_a1;
+  const double centre_2_x = -(k->swap_xy ? pivot_rear_y : pivot_rear_x)*k->link_length_2_by_link_length_3;
+  const double centre_1_to_2_x = centre_2_x - centre_1_x; /* vector from centre 1 to centre 2 */
+  const double centre_2_y = -(k->swap_xy ? pivot_rear_x : pivot_rear_y)*k->link_length_2_by_link_length_3;
+  const double centre_1_to_2_y = centre_2_y - centre_1_y;
+  /* squared length of the normal */
+  const double normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y;
+  const double normal_divisor = normal_square > k->product_in_normal_divisor ? normal_square : 1.0;
+  const double between_centres = softkin_root(normal_divisor); /* distance between the centres */
+  const double one_by_normal_square = 1.0/normal_divisor;
+  /* square of the height over the line of the centres */
+  const double height_square = 0.25*(k->link_length_2_plus_radius_2 - between_centres)
+      *(between_centres + k->link_length_2_minus_radius_2)*(between_centres + k->link_length_2_plus_radius_2)
+      *(between_centres - k->link_length_2_minus_radius_2)*one_by_normal_square;
+  const double twice_link_length_1_times_sin_a1 = k->twice_link_length_1*sin_a1;
+  const double twice_link_length_1_times_cos_a1 = k->twice_link_length_1*cos_a1;
+  /* foot of the perpendicular, as a fraction of this distance */
+  const double foot_fraction = 0.5*(normal_divisor + k->product_in_foot_fraction)*one_by_normal_square;
+  /* foot of the perpendicular, seen from centre 1 */
+  const double foot_x = centre_1_to_2_x*foot_fraction;
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
+  const double x = centre_1_x + foot_x - centre_1_to_2_y*height_by_normal;
+  const double twice_x = 2.0*x;
+  const double foot_y = centre_1_to_2_y*foot_fraction;
+  const double y = centre_1_y + foot_y + centre_1_to_2_x*height_by_normal;
+  const double twice_y = 2.0*y;
+  const double y_minus_pivot_upper_x = y - pivot_upper_x;
+  const double x_minus_pivot_upper_y = x - pivot_upper_y;
+  const double link_length_3_by_link_length_2_times_x = k->link_length_3_by_link_length_2*x;
+  const double sum_in_slope_2_by_y = cos_a2_times_link_length_5 - k->product_in_slope_2_by_x*sin_a1;
+  const double sum_in_slope_2_by_x = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_x;
+  const double sum_in_slope_2_by_y_2 = link_length_5_times_sin_a2 + k->product_in_slope_2_by_x*cos_a1;
+  const double sum_in_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + sum_in_slope_2_by_y_2;
+  const double link_length_3_by_link_length_2_times_y = k->link_length_3_by_link_length_2*y;
+  const double sum_in_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + sum_in_slope_2_by_y_2;
+  const double sum_in_slope_2_by_y_4 = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_y;
+  double slope_1_by_x, slope_1_by_y, slope_1_by_a1, slope_2_by_a1, slope_2_by_a2;
+  if (k->swap_xy) {
+    slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x;
+    slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y;
+    slope_1_by_a1 = k->twice_link_length_1*(y_minus_pivot_upper_x*cos_a1 - x_minus_pivot_upper_y*sin_a1);
+    slope_2_by_a1 = (-sum_in_slope_2_by_y_4*cos_a1 - sum_in_slope_2_by_x_2*sin_a1)
+        *k->product_in_slope_2_by_a1;
+    slope_2_by_a2 = k->twice_link_length_5*(sum_in_slope_2_by_x_2*cos_a2 - sum_in_slope_2_by_y_4*sin_a2);
+  } else {
+    const double x_minus_pivot_upper_x = x - pivot_upper_x;
+    const double y_minus_pivot_upper_y = y - pivot_upper_y;
+    slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x;
+    slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y;
+    slope_1_by_a1 = k->twice_link_length_1*(x_minus_pivot_upper_x*cos_a1 - y_minus_pivot_upper_y*sin_a1);
+    slope_2_by_a1 = (-sum_in_slope_2_by_x*cos_a1 - sum_in_slope_2_by_y_3*sin_a1)*k->product_in_slope_2_by_a1;
+    slope_2_by_a2 = k->twice_link_length_5*(sum_in_slope_2_by_y_3*cos_a2 - sum_in_slope_2_by_x*sin_a2);
+  }
+  const double slope_2_by_x = -(k->swap_xy ? -sum_in_slope_2_by_x_2 : sum_in_slope_2_by_x)
+      *k->link_length_3_times_2_by_link_length_2;
+  const double slope_2_by_y = -(k->swap_xy ? sum_in_slope_2_by_y_4 : -sum_in_slope_2_by_y_3)
+      *k->link_length_3_times_2_by_link_length_2;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x;
+  const double determinant_divisor = fabs(determinant) > k->machine_scale_squared_times_free_angle
+      ? determinant : 1.0;
+  const double one_by_determinant = 1.0/determinant_divisor;
+  const double slope_2_by_a2_times_speed_a2 = slope_2_by_a2*speed_a2;
+  const double velocity_y = ((slope_1_by_a1*slope_2_by_x - slope_1_by_x*slope_2_by_a1)*speed_a1
+      - slope_1_by_x*slope_2_by_a2_times_speed_a2)*one_by_determinant;
+  const double twice_velocity_y = 2.0*velocity_y;
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double twice_link_length_1_times_rate_of_cos_a1 = rate_of_cos_a1*k->twice_link_length_1;
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double twice_link_length_1_times_rate_of_sin_a1 = rate_of_sin_a1*k->twice_link_length_1;
+  const double rate_of_sin_a2 = speed_a2*cos_a2;
+  const double sum_in_rate_of_slope_2_by_y = k->quotient_in_rate_of_slope_2_by_y*rate_of_cos_a1
+      + k->quotient_in_rate_of_slope_2_by_y_2*rate_of_sin_a2;
+  const double rate_of_cos_a2 = -speed_a2*sin_a2;
+  const double sum_in_rate_of_slope_2_by_y_2 = k->quotient_in_rate_of_slope_2_by_y*rate_of_sin_a1
+      - k->quotient_in_rate_of_slope_2_by_y_2*rate_of_cos_a2;
+  const double product_in_rate_of_slope_2_by_y = k->quotient_in_rate_of_slope_2_by_y_3*velocity_y;
+  const double velocity_x = one_by_determinant
+      *(slope_1_by_y*slope_2_by_a2_times_speed_a2
+      + (slope_1_by_y*slope_2_by_a1 - slope_1_by_a1*slope_2_by_y)*speed_a1);
+  const double product_in_rate_of_slope_1_by_a1 = k->link_length_1_squared_times_2*cos_a1;
+  const double product_in_rate_of_slope_1_by_a1_2 = k->link_length_1_squared_times_2*sin_a1;
+  const double sum_in_rate_of_slope_2_by_a1_2 = velocity_x*sin_a1 - velocity_y*cos_a1;
+  const double sum_in_rate_of_slope_2_by_a1 = velocity_y*sin_a1 - velocity_x*cos_a1;
+  const double twice_velocity_x = 2.0*velocity_x;
+  const double product_in_rate_of_slope_2_by_x = k->quotient_in_rate_of_slope_2_by_y_3*velocity_x;
+  double rate_of_slope_1_by_y, rate_of_slope_2_by_y, rate_of_slope_1_by_a1, rate_of_slope_1_by_x,
+      rate_of_slope_2_by_x;
+  if (k->swap_xy) {
+    rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_y;
+    rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y_2;
+    rate_of_slope_1_by_a1 = (k->twice_link_length_1*y_minus_pivot_upper_x
+        - product_in_rate_of_slope_1_by_a1_2)*rate_of_cos_a1
+        + (product_in_rate_of_slope_1_by_a1 - k->twice_link_length_1*x_minus_pivot_upper_y)*rate_of_sin_a1
+        - sum_in_rate_of_slope_2_by_a1_2*k->twice_link_length_1;
+    rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_x;
+    rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y;
+  } else {
+    const double x_minus_pivot_upper_x = x - pivot_upper_x;
+    const double y_minus_pivot_upper_y = y - pivot_upper_y;
+    rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_y;
+    rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y;
+    rate_of_slope_1_by_a1 = (k->twice_link_length_1*x_minus_pivot_upper_x
+        - product_in_rate_of_slope_1_by_a1_2)*rate_of_cos_a1
+        + (product_in_rate_of_slope_1_by_a1 - k->twice_link_length_1*y_minus_pivot_upper_y)*rate_of_sin_a1
+        - sum_in_rate_of_slope_2_by_a1*k->twice_link_length_1;
+    rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_x;
+    rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y_2;
+  }
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  if (!(height_square >= -k->link_length_2_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  if (!(fabs(determinant) > k->machine_scale_squared_times_free_angle)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double product_in_rate_of_slope_2_by_a1_3 = k->product_in_rate_of_slope_2_by_a1*cos_a1;
+  const double product_in_rate_of_slope_2_by_a1_4 = k->product_in_rate_of_slope_2_by_a1*sin_a1;
+  const double sum_in_rate_of_slope_2_by_a1_4 = k->quotient_in_rate_of_slope_2_by_y
+      *sum_in_rate_of_slope_2_by_a1
+      + (product_in_rate_of_slope_2_by_a1_4 + k->product_in_slope_2_by_a1*sum_in_slope_2_by_x)*rate_of_cos_a1
+      + (k->product_in_slope_2_by_a1*sum_in_slope_2_by_y_3 - product_in_rate_of_slope_2_by_a1_3)
+      *rate_of_sin_a1;
+  const double sum_in_rate_of_slope_2_by_a1_3 = k->quotient_in_rate_of_slope_2_by_y
+      *sum_in_rate_of_slope_2_by_a1_2
+      + (product_in_rate_of_slope_2_by_a1_4 + k->product_in_slope_2_by_a1*sum_in_slope_2_by_y_4)
+      *rate_of_cos_a1 + (k->product_in_slope_2_by_a1*sum_in_slope_2_by_x_2
+      - product_in_rate_of_slope_2_by_a1_3)*rate_of_sin_a1;
+  const double rate_of_slope_2_by_a1 = (k->swap_xy ? -sum_in_rate_of_slope_2_by_a1_3
+      : -sum_in_rate_of_slope_2_by_a1_4)
+      + (-rate_of_cos_a2*cos_a1 - rate_of_sin_a2*sin_a1)*k->product_in_rate_of_slope_2_by_a1_2;
+  const double rate_of_determinant = rate_of_slope_1_by_x*slope_2_by_y + rate_of_slope_2_by_y*slope_1_by_x
+      - rate_of_slope_1_by_y*slope_2_by_x - rate_of_slope_2_by_x*slope_1_by_y;
+  const double shared_product = one_by_determinant*(slope_2_by_a2_times_speed_a2 + slope_2_by_a1*speed_a1);
+  const double product_in_rate_of_slope_2_by_a2 = k->link_length_5_squared_times_2*cos_a2;
+  const double product_in_rate_of_slope_2_by_a2_2 = k->link_length_5_squared_times_2*sin_a2;
+  const double sum_in_rate_of_slope_2_by_a2_2 = k->quotient_in_rate_of_slope_2_by_y_2
+      *(velocity_y*cos_a2 + velocity_x*sin_a2)
+      + (sum_in_slope_2_by_y_3*k->twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2)*rate_of_cos_a2
+      + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_x*k->twice_link_length_5)*rate_of_sin_a2;
+  const double sum_in_rate_of_slope_2_by_a2 = k->quotient_in_rate_of_slope_2_by_y_2
+      *(velocity_x*cos_a2 + velocity_y*sin_a2)
+      + (sum_in_slope_2_by_x_2*k->twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2)*rate_of_cos_a2
+      + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_y_4*k->twice_link_length_5)*rate_of_sin_a2;
+  const double rate_of_slope_2_by_a2 = (k->swap_xy ? sum_in_rate_of_slope_2_by_a2
+      : sum_in_rate_of_slope_2_by_a2_2)
+      + k->product_in_rate_of_slope_2_by_a1_2*(rate_of_cos_a1*cos_a2 + rate_of_sin_a1*sin_a2);
+  const double speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2*speed_a2;
+  accelerations[0] = one_by_determinant
+      *(slope_1_by_y*speed_a2_times_rate_of_slope_2_by_a2
+      + (rate_of_slope_2_by_a1*slope_1_by_y - rate_of_slope_1_by_a1*slope_2_by_y
+      - rate_of_slope_2_by_y*slope_1_by_a1)*speed_a1) + rate_of_slope_1_by_y*shared_product
+      - one_by_determinant*rate_of_determinant*velocity_x;
+  accelerations[1] = ((rate_of_slope_1_by_a1*slope_2_by_x + rate_of_slope_2_by_x*slope_1_by_a1
+      - rate_of_slope_2_by_a1*slope_1_by_x)*speed_a1 - slope_1_by_x*speed_a2_times_rate_of_slope_2_by_a2)
+      *one_by_determinant - rate_of_slope_1_by_x*shared_product
+      - one_by_determinant*rate_of_determinant*velocity_y;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -878,6 +1071,17 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double link_length_3_times_2_by_link_length_2 = 2.0*p->link_length_3/p->link_length_2;
   const double product_in_slope_2_by_a1 = 2.0*p->link_length_1*link_length_3_by_link_length_2_plus_one;
   const double twice_link_length_5 = 2.0*p->link_length_5;
+  const double quotient_in_rate_of_slope_2_by_y = 2.0*p->link_length_1*p->link_length_3
+      *link_length_3_by_link_length_2_plus_one/p->link_length_2;
+  const double quotient_in_rate_of_slope_2_by_y_2 = 2.0*p->link_length_3*p->link_length_5/p->link_length_2;
+  const double quotient_in_rate_of_slope_2_by_y_3 = 2.0*p->link_length_3*p->link_length_3
+      /(p->link_length_2*p->link_length_2);
+  const double link_length_1_squared_times_2 = 2.0*p->link_length_1*p->link_length_1;
+  const double product_in_rate_of_slope_2_by_a1 = 2.0*p->link_length_1*p->link_length_1
+      *link_length_3_by_link_length_2_plus_one*link_length_3_by_link_length_2_plus_one;
+  const double product_in_rate_of_slope_2_by_a1_2 = 2.0*p->link_length_1
+      *link_length_3_by_link_length_2_plus_one*p->link_length_5;
+  const double link_length_5_squared_times_2 = 2.0*p->link_length_5*p->link_length_5;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -920,6 +1124,13 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2;
   made.product_in_slope_2_by_a1 = product_in_slope_2_by_a1;
   made.twice_link_length_5 = twice_link_length_5;
+  made.quotient_in_rate_of_slope_2_by_y = quotient_in_rate_of_slope_2_by_y;
+  made.quotient_in_rate_of_slope_2_by_y_2 = quotient_in_rate_of_slope_2_by_y_2;
+  made.quotient_in_rate_of_slope_2_by_y_3 = quotient_in_rate_of_slope_2_by_y_3;
+  made.link_length_1_squared_times_2 = link_length_1_squared_times_2;
+  made.product_in_rate_of_slope_2_by_a1 = product_in_rate_of_slope_2_by_a1;
+  made.product_in_rate_of_slope_2_by_a1_2 = product_in_rate_of_slope_2_by_a1_2;
+  made.link_length_5_squared_times_2 = link_length_5_squared_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(mc_kin_type_12_xy_machine *)machine = made;
   return SOFTKIN_OK;
@@ -957,6 +1168,7 @@ const softkin_mechanism mc_kin_type_12_xy_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -1000,6 +1212,18 @@ softkin_status mc_kin_type_12_xy_branches(const mc_kin_type_12_xy_machine *machi
 softkin_status mc_kin_type_12_xy_jacobian(const mc_kin_type_12_xy_machine *machine, const double *axes,
     double *rows, softkin_refusal *why) {
   return softkin_jacobian(&mc_kin_type_12_xy_mechanism, machine, axes, rows, why);
+}
+
+softkin_status mc_kin_type_12_xy_axis_velocities(const mc_kin_type_12_xy_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&mc_kin_type_12_xy_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status mc_kin_type_12_xy_axis_accelerations(const mc_kin_type_12_xy_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  return softkin_axis_accelerations(&mc_kin_type_12_xy_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status mc_kin_type_12_xy_singularity(const mc_kin_type_12_xy_machine *machine, const double *axes,

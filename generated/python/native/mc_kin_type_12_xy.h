@@ -89,7 +89,10 @@ typedef struct {
       product_in_branch_crank, quotient_in_branch_crank, sum_in_pivot_rear_x,
       link_length_1_plus_link_length_2, link_length_4_plus_link_length_5, quotient_in_type2_arms_aligned,
       quotient_in_margin_arms_aligned, twice_link_length_1, product_in_slope_2_by_x,
-      link_length_3_times_2_by_link_length_2, product_in_slope_2_by_a1, twice_link_length_5;
+      link_length_3_times_2_by_link_length_2, product_in_slope_2_by_a1, twice_link_length_5,
+      quotient_in_rate_of_slope_2_by_y, quotient_in_rate_of_slope_2_by_y_2,
+      quotient_in_rate_of_slope_2_by_y_3, link_length_1_squared_times_2, product_in_rate_of_slope_2_by_a1,
+      product_in_rate_of_slope_2_by_a1_2, link_length_5_squared_times_2;
   bool single_a1, single_a2, swap_xy;
 } mc_kin_type_12_xy_machine;
 
@@ -152,6 +155,16 @@ softkin_status mc_kin_type_12_xy_branches(const mc_kin_type_12_xy_machine *machi
 /** The Jacobian, per radian: 2 rows of 2. */
 softkin_status mc_kin_type_12_xy_jacobian(const mc_kin_type_12_xy_machine *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 2 numbers, rows as in the Jacobian. */
+softkin_status mc_kin_type_12_xy_axis_velocities(const mc_kin_type_12_xy_machine *machine,
+    const double *axes, const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 2 numbers, at the velocities that the axes have.
+ * */
+softkin_status mc_kin_type_12_xy_axis_accelerations(const mc_kin_type_12_xy_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
 
 /** 3 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status mc_kin_type_12_xy_singularity(const mc_kin_type_12_xy_machine *machine, const double *axes,

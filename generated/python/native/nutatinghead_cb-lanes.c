@@ -19,16 +19,14 @@ void nutatinghead_cb_regular(const void *machine, const softkin_lanes *given,
       pivot_length = k->pivot_length,
       pivot_length_times_cos_nutation_squared = k->pivot_length_times_cos_nutation_squared,
       pivot_length_times_sin_nutation = k->pivot_length_times_sin_nutation,
-      product_in_joint_x = k->product_in_joint_x, shared_size = k->shared_size,
-      sin_nutation = k->sin_nutation, single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
+      product_in_joint_x = k->product_in_joint_x, sin_nutation = k->sin_nutation,
+      single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
         sigma_tilt = given->signs[0][lane], ref_c = given->reference[3][lane],
         ref_b = given->reference[4][lane];
     double missed = misses[lane];
-    /* b: its effective length is too short */
-    missed += shared_size > 5e-10 ? 0.0 : 1.0;
     missed += -r33 < 0.0 ? 0.0 : 1.0;
     const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
     /* law of cosines for b (r33): 1 - cosine, times a scale */
@@ -100,14 +98,11 @@ void nutatinghead_cb_regular_all(const void *machine, const softkin_lanes *given
       pivot_length_times_sin_nutation = k->pivot_length_times_sin_nutation,
       product_in_joint_x = k->product_in_joint_x, sin_nutation = k->sin_nutation,
       single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0;
-  const double shared_size_2 = fabs(cos_nutation_squared - 1.0);
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
         ref_c = given->reference[3][lane], ref_b = given->reference[4][lane];
     double missed = misses[lane];
-    /* b: its effective length is too short */
-    missed += shared_size_2 > 5e-10 ? 0.0 : 1.0;
     missed += -r33 < 0.0 ? 0.0 : 1.0;
     const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
     /* law of cosines for b (r33): 1 - cosine, times a scale */

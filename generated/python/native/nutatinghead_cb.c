@@ -171,10 +171,6 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_b, ref_c}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  /* b: its effective length is too short */
-  if (!(k->shared_size > 5e-10)) {
-    return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: its effective length is too short", "", 0.0, 0);
-  }
   const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
   /* law of cosines for b (r33): 1 - cosine, times a scale */
   const double one_less_cos_b = -r33 < 0.0 ? -r13_squared_plus_r23_squared/(1.0 + fabs(r33)) : r33 - 1.0;
@@ -403,6 +399,102 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const nutatinghead_cb_machine *k = machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], axis_c = axes[3], axis_b = axes[4],
+      speed_x = speeds[0], speed_y = speeds[1], speed_z = speeds[2], speed_c = speeds[3], speed_b = speeds[4];
+  if (!softkin_are_reasonable((const double[]){speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c,
+      axis_x, axis_y, axis_z}, 10)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double c = SOFTKIN_DEGREE*(axis_c - k->offset_c);
+  const double cos_c = cos(c);
+  const double r23_at_b_turned = cos_c*k->sin_nutation;
+  const double rate_of_sin_c = speed_c*cos_c;
+  const double rate_of_y_at_b = speed_y + k->fork_offset*rate_of_sin_c;
+  const double sin_c = sin(c);
+  const double rate_of_cos_c = -speed_c*sin_c;
+  const double rate_of_r23_at_b_turned = rate_of_cos_c*k->sin_nutation;
+  const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
+  const double sin_b = sin(b);
+  const double cos_b = cos(b);
+  const double r22_at_b_turned = cos_c*k->cos_nutation;
+  const double rate_of_r22_at_b_turned = rate_of_cos_c*k->cos_nutation;
+  const double rate_of_sin_b = speed_b*cos_b;
+  const double rate_of_cos_b = -speed_b*sin_b;
+  const double rate_of_r21_at_b = rate_of_sin_c*cos_b + r22_at_b_turned*rate_of_sin_b + rate_of_cos_b*sin_c
+      + rate_of_r22_at_b_turned*sin_b;
+  const double rate_of_r22_at_b = rate_of_r22_at_b_turned*cos_b + r22_at_b_turned*rate_of_cos_b
+      - rate_of_sin_b*sin_c - rate_of_sin_c*sin_b;
+  const double rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned*k->cos_nutation
+      - rate_of_r22_at_b*k->sin_nutation;
+  const double rate_of_y = rate_of_y_at_b + k->head_offset*rate_of_r21_at_b
+      - k->pivot_length*rate_of_r23_at_b_turned_2;
+  const double rate_of_r31_at_b = -rate_of_sin_b*k->sin_nutation;
+  const double r13_at_b_turned = -sin_c*k->sin_nutation;
+  const double rate_of_x_at_b = speed_x + k->fork_offset*rate_of_cos_c;
+  const double rate_of_r13_at_b_turned = -rate_of_sin_c*k->sin_nutation;
+  const double r12_at_b_turned = -k->cos_nutation*sin_c;
+  const double rate_of_r12_at_b_turned = -rate_of_sin_c*k->cos_nutation;
+  const double rate_of_r11_at_b = rate_of_cos_c*cos_b + rate_of_cos_b*cos_c + r12_at_b_turned*rate_of_sin_b
+      + rate_of_r12_at_b_turned*sin_b;
+  const double rate_of_r12_at_b = rate_of_r12_at_b_turned*cos_b + r12_at_b_turned*rate_of_cos_b
+      - rate_of_sin_b*cos_c - rate_of_cos_c*sin_b;
+  const double rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned*k->cos_nutation
+      - rate_of_r12_at_b*k->sin_nutation;
+  const double rate_of_x = rate_of_x_at_b + k->head_offset*rate_of_r11_at_b
+      - k->pivot_length*rate_of_r13_at_b_turned_2;
+  const double joint_y = axis_y - k->offset_y;
+  const double y_at_b = joint_y + k->fork_offset*sin_c;
+  const double r21_at_b = cos_b*sin_c + r22_at_b_turned*sin_b;
+  const double r22_at_b = r22_at_b_turned*cos_b - sin_b*sin_c;
+  const double r23_at_b_turned_2 = r23_at_b_turned*k->cos_nutation - r22_at_b*k->sin_nutation;
+  const double y = y_at_b + k->head_offset*r21_at_b - k->pivot_length*r23_at_b_turned_2;
+  const double joint_x = axis_x - k->offset_x;
+  const double x_at_b = joint_x + k->fork_offset*cos_c;
+  const double r11_at_b = cos_b*cos_c + r12_at_b_turned*sin_b;
+  const double r12_at_b = r12_at_b_turned*cos_b - cos_c*sin_b;
+  const double r13_at_b_turned_2 = r13_at_b_turned*k->cos_nutation - r12_at_b*k->sin_nutation;
+  const double x = x_at_b + k->head_offset*r11_at_b - k->pivot_length*r13_at_b_turned_2;
+  const double r12_at_b_turned_2 = r12_at_b*k->cos_nutation + r13_at_b_turned*k->sin_nutation;
+  const double r22_at_b_turned_2 = r22_at_b*k->cos_nutation + r23_at_b_turned*k->sin_nutation;
+  const double rate_of_r32_at_b = -rate_of_cos_b*k->sin_nutation;
+  const double rate_of_r32_at_b_turned = rate_of_r32_at_b*k->cos_nutation;
+  const double rate_of_r12_at_b_turned_2 = rate_of_r12_at_b*k->cos_nutation
+      + rate_of_r13_at_b_turned*k->sin_nutation;
+  const double rate_of_r22_at_b_turned_2 = rate_of_r22_at_b*k->cos_nutation
+      + rate_of_r23_at_b_turned*k->sin_nutation;
+  const double joint_z = axis_z - k->offset_z;
+  const double r31_at_b = -sin_b*k->sin_nutation;
+  const double r32_at_b = -cos_b*k->sin_nutation;
+  const double r33_at_b_turned = k->cos_nutation_squared - r32_at_b*k->sin_nutation;
+  const double z = joint_z + k->head_offset*r31_at_b - k->pivot_length*r33_at_b_turned;
+  const double z_minus_joint_z = z - joint_z;
+  const double speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b*k->cos_nutation;
+  const double rate_of_r33_at_b_turned = -rate_of_r32_at_b*k->sin_nutation;
+  const double rate_of_z = speed_z + k->head_offset*rate_of_r31_at_b
+      - k->pivot_length*rate_of_r33_at_b_turned;
+  const double rate_of_z_minus_speed_z = rate_of_z - speed_z;
+  accelerations[0] = speed_b*(rate_of_y_at_b*k->cos_nutation + r23_at_b_turned*rate_of_z_minus_speed_z
+      + rate_of_r23_at_b_turned*z_minus_joint_z) + speed_c*speed_y
+      - rate_of_y*speed_c_plus_cos_nutation_times_speed_b;
+  accelerations[1] = rate_of_x*speed_c_plus_cos_nutation_times_speed_b
+      + (-rate_of_x_at_b*k->cos_nutation - r13_at_b_turned*rate_of_z_minus_speed_z
+      - rate_of_r13_at_b_turned*z_minus_joint_z)*speed_b - speed_c*speed_x;
+  accelerations[2] = (r13_at_b_turned*(rate_of_y - rate_of_y_at_b)
+      + (rate_of_x_at_b - rate_of_x)*r23_at_b_turned + rate_of_r13_at_b_turned*(y - y_at_b)
+      + (x_at_b - x)*rate_of_r23_at_b_turned)*speed_b;
+  accelerations[3] = rate_of_r31_at_b*speed_c_plus_cos_nutation_times_speed_b
+      + (r11_at_b*rate_of_r13_at_b_turned + r13_at_b_turned*rate_of_r11_at_b
+      + r21_at_b*rate_of_r23_at_b_turned + r23_at_b_turned*rate_of_r21_at_b)*speed_b;
+  accelerations[4] = rate_of_r32_at_b_turned*speed_c_plus_cos_nutation_times_speed_b
+      + (r12_at_b_turned_2*rate_of_r13_at_b_turned + r13_at_b_turned*rate_of_r12_at_b_turned_2
+      + r22_at_b_turned_2*rate_of_r23_at_b_turned + r23_at_b_turned*rate_of_r22_at_b_turned_2)*speed_b;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -411,10 +503,6 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double x = frame->position[0], y = frame->position[1], z = frame->position[2],
       r13 = frame->rotation[0][2], r23 = frame->rotation[1][2], r33 = frame->rotation[2][2],
       ref_c = reference[3], ref_b = reference[4];
-  const double shared_size_2 = fabs(k->cos_nutation_squared - 1.0);
-  if (!(shared_size_2 > 5e-10)) {
-    return softkin_refuse_all(SOFTKIN_UNREACHABLE, statuses, 2);
-  }
   const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
   /* law of cosines for b (r33): 1 - cosine, times a scale */
   const double one_less_cos_b = -r33 < 0.0 ? -r13_squared_plus_r23_squared/(1.0 + fabs(r33)) : r33 - 1.0;
@@ -558,7 +646,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sin_nutation = sin(SOFTKIN_DEGREE*p->nutation);
   const double cos_nutation_squared = cos_nutation*cos_nutation;
   const double cos_nutation_times_sin_nutation = cos_nutation*sin_nutation;
-  const double shared_size = fabs(cos_nutation_squared - 1.0);
   const double pivot_length_times_cos_nutation_squared = p->pivot_length*cos_nutation*cos_nutation;
   const double one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0*cos_nutation*cos_nutation;
   const double product_in_joint_x = p->pivot_length*cos_nutation*sin_nutation;
@@ -591,7 +678,6 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sin_nutation = sin_nutation;
   made.cos_nutation_squared = cos_nutation_squared;
   made.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation;
-  made.shared_size = shared_size;
   made.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared;
   made.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2;
   made.product_in_joint_x = product_in_joint_x;
@@ -636,6 +722,7 @@ const softkin_mechanism nutatinghead_cb_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -678,6 +765,17 @@ softkin_status nutatinghead_cb_branches(const nutatinghead_cb_machine *machine, 
 softkin_status nutatinghead_cb_jacobian(const nutatinghead_cb_machine *machine, const double *axes,
     double *rows, softkin_refusal *why) {
   return softkin_jacobian(&nutatinghead_cb_mechanism, machine, axes, rows, why);
+}
+
+softkin_status nutatinghead_cb_axis_velocities(const nutatinghead_cb_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&nutatinghead_cb_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status nutatinghead_cb_axis_accelerations(const nutatinghead_cb_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&nutatinghead_cb_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status nutatinghead_cb_singularity(const nutatinghead_cb_machine *machine, const double *axes,

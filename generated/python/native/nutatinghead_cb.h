@@ -93,9 +93,8 @@ typedef struct {
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_c, highest_c, mid_c, lowest_b,
       highest_b, mid_b, fork_offset, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_c,
       offset_b, cos_nutation, sin_nutation, cos_nutation_squared, cos_nutation_times_sin_nutation,
-      shared_size, pivot_length_times_cos_nutation_squared, one_minus_cos_nutation_squared_times_2,
-      product_in_joint_x, cos_nutation_times_head_offset, pivot_length_times_sin_nutation,
-      head_offset_times_sin_nutation;
+      pivot_length_times_cos_nutation_squared, one_minus_cos_nutation_squared_times_2, product_in_joint_x,
+      cos_nutation_times_head_offset, pivot_length_times_sin_nutation, head_offset_times_sin_nutation;
   bool single_c, single_b;
 } nutatinghead_cb_machine;
 
@@ -157,6 +156,15 @@ softkin_status nutatinghead_cb_branches(const nutatinghead_cb_machine *machine, 
 /** The Jacobian, per radian: 5 rows of 5. */
 softkin_status nutatinghead_cb_jacobian(const nutatinghead_cb_machine *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 5 numbers, rows as in the Jacobian. */
+softkin_status nutatinghead_cb_axis_velocities(const nutatinghead_cb_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 5 numbers, at the velocities that the axes have.
+ * */
+softkin_status nutatinghead_cb_axis_accelerations(const nutatinghead_cb_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status nutatinghead_cb_singularity(const nutatinghead_cb_machine *machine, const double *axes,

@@ -14,17 +14,14 @@ void nutatingtable_bc_regular(const void *machine, const softkin_lanes *given,
       mid_c = k->mid_c, offset_b = k->offset_b, offset_c = k->offset_c, offset_x = k->offset_x,
       offset_y = k->offset_y, offset_z = k->offset_z,
       one_minus_cos_nutation_squared_times_2 = k->one_minus_cos_nutation_squared_times_2,
-      pivot_x = k->pivot_x, pivot_z = k->pivot_z, shared_size = k->shared_size,
-      sin_nutation = k->sin_nutation, single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0,
-      tool_length = k->tool_length;
+      pivot_x = k->pivot_x, pivot_z = k->pivot_z, sin_nutation = k->sin_nutation,
+      single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0, tool_length = k->tool_length;
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
         sigma_tilt = given->signs[0][lane], ref_b = given->reference[3][lane],
         ref_c = given->reference[4][lane];
     double missed = misses[lane];
-    /* b: its effective length is too short */
-    missed += shared_size > 5e-10 ? 0.0 : 1.0;
     missed += -r33 < 0.0 ? 0.0 : 1.0;
     const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
     /* law of cosines for b (r33): 1 - cosine, times a scale */
@@ -88,21 +85,18 @@ void nutatingtable_bc_regular_all(const void *machine, const softkin_lanes *give
     double (*SOFTKIN_RESTRICT statuses)[SOFTKIN_LANES], double (*SOFTKIN_RESTRICT axes)[SOFTKIN_LANES],
     double (*SOFTKIN_RESTRICT near)[SOFTKIN_LANES], double *SOFTKIN_RESTRICT misses) {
   const nutatingtable_bc_machine *k = machine;
-  const double cos_nutation = k->cos_nutation, cos_nutation_squared = k->cos_nutation_squared,
+  const double cos_nutation = k->cos_nutation,
       cos_nutation_times_sin_nutation = k->cos_nutation_times_sin_nutation, mid_b = k->mid_b,
       mid_c = k->mid_c, offset_b = k->offset_b, offset_c = k->offset_c, offset_x = k->offset_x,
       offset_y = k->offset_y, offset_z = k->offset_z,
       one_minus_cos_nutation_squared_times_2 = k->one_minus_cos_nutation_squared_times_2,
       pivot_x = k->pivot_x, pivot_z = k->pivot_z, sin_nutation = k->sin_nutation,
       single_b = k->single_b ? 1.0 : 0.0, single_c = k->single_c ? 1.0 : 0.0, tool_length = k->tool_length;
-  const double shared_size_2 = fabs(cos_nutation_squared - 1.0);
   for (int lane = 0; lane < SOFTKIN_LANES; lane += 1) {
     const double x = given->position[0][lane], y = given->position[1][lane], z = given->position[2][lane],
         r13 = given->rotation[2][lane], r23 = given->rotation[5][lane], r33 = given->rotation[8][lane],
         ref_b = given->reference[3][lane], ref_c = given->reference[4][lane];
     double missed = misses[lane];
-    /* b: its effective length is too short */
-    missed += shared_size_2 > 5e-10 ? 0.0 : 1.0;
     missed += -r33 < 0.0 ? 0.0 : 1.0;
     const double r13_squared_plus_r23_squared = r13*r13 + r23*r23;
     /* law of cosines for b (r33): 1 - cosine, times a scale */

@@ -93,7 +93,7 @@ typedef struct {
   softkin_ends ends[NUTATINGTABLE_BC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_b, highest_b, mid_b, lowest_c,
       highest_c, mid_c, pivot_x, pivot_z, tool_length, offset_x, offset_y, offset_z, offset_b, offset_c,
-      cos_nutation, sin_nutation, cos_nutation_times_sin_nutation, cos_nutation_squared, shared_size,
+      cos_nutation, sin_nutation, cos_nutation_times_sin_nutation, cos_nutation_squared,
       one_minus_cos_nutation_squared_times_2;
   bool single_b, single_c;
 } nutatingtable_bc_machine;
@@ -156,6 +156,16 @@ softkin_status nutatingtable_bc_branches(const nutatingtable_bc_machine *machine
 /** The Jacobian, per radian: 5 rows of 5. */
 softkin_status nutatingtable_bc_jacobian(const nutatingtable_bc_machine *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 5 numbers, rows as in the Jacobian. */
+softkin_status nutatingtable_bc_axis_velocities(const nutatingtable_bc_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 5 numbers, at the velocities that the axes have.
+ * */
+softkin_status nutatingtable_bc_axis_accelerations(const nutatingtable_bc_machine *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
 
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status nutatingtable_bc_singularity(const nutatingtable_bc_machine *machine, const double *axes,

@@ -430,6 +430,105 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const p2c_type2_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_a1 = cos(a1);
+  /* rod 1: centre about which it swings */
+  const double pivot_1_x = k->inner_arm*cos_a1 - k->sum_in_pivot_1_x;
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double cos_a2 = cos(a2);
+  /* rod 2: centre about which it swings */
+  const double pivot_2_x = k->sum_in_pivot_1_x + k->inner_arm*cos_a2;
+  const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
+  const double sin_a1 = sin(a1);
+  const double pivot_1_y = k->inner_arm*sin_a1;
+  const double sin_a2 = sin(a2);
+  const double pivot_2_y = k->inner_arm*sin_a2;
+  const double centre_1_to_2_y = pivot_2_y - pivot_1_y;
+  /* squared length of the normal */
+  const double normal_square = centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_y*centre_1_to_2_y;
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  const double between_centres = softkin_root(normal_square); /* distance between the centres */
+  /* square of the height over the line of the centres */
+  const double height_square = 0.25*(k->twice_outer_arm - between_centres)
+      *(between_centres + k->twice_outer_arm)*between_centres*between_centres/normal_square;
+  /* the rods do not meet */
+  if (!(height_square >= -k->outer_arm_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  const double foot_x = 0.5*centre_1_to_2_x; /* foot of the perpendicular, seen from centre 1 */
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square/normal_square)*k->assembly_sign;
+  const double x = foot_x + pivot_1_x - centre_1_to_2_y*height_by_normal;
+  const double twice_x = 2.0*x;
+  const double slope_1_by_x = twice_x - k->sum_in_slope_1_by_x - k->twice_inner_arm*cos_a1;
+  const double foot_y = 0.5*centre_1_to_2_y;
+  const double y = foot_y + pivot_1_y + centre_1_to_2_x*height_by_normal;
+  const double twice_y = 2.0*y;
+  const double slope_1_by_y = twice_y - k->twice_inner_arm*sin_a1;
+  const double slope_2_by_x = k->sum_in_slope_1_by_x + twice_x - k->twice_inner_arm*cos_a2;
+  const double slope_2_by_y = twice_y - k->twice_inner_arm*sin_a2;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x*slope_2_by_y - slope_1_by_y*slope_2_by_x;
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > k->machine_scale_squared_times_free_angle)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double x_minus_pivot_1_x = x - pivot_1_x;
+  const double y_minus_pivot_1_y = y - pivot_1_y;
+  const double slope_1_by_a1 = (x_minus_pivot_1_x*sin_a1 - y_minus_pivot_1_y*cos_a1)*k->twice_inner_arm;
+  const double x_minus_pivot_2_x = x - pivot_2_x;
+  const double y_minus_pivot_2_y = y - pivot_2_y;
+  const double slope_2_by_a2 = (x_minus_pivot_2_x*sin_a2 - y_minus_pivot_2_y*cos_a2)*k->twice_inner_arm;
+  const double one_by_determinant = 1.0/determinant;
+  const double speed_a2_times_slope_2_by_a2 = slope_2_by_a2*speed_a2;
+  const double speed_a1_times_slope_1_by_a1 = slope_1_by_a1*speed_a1;
+  const double velocity_y = (slope_2_by_x*speed_a1_times_slope_1_by_a1
+      - slope_1_by_x*speed_a2_times_slope_2_by_a2)*one_by_determinant;
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double twice_velocity_y = 2.0*velocity_y;
+  const double rate_of_slope_1_by_y = twice_velocity_y - rate_of_sin_a1*k->twice_inner_arm;
+  const double rate_of_sin_a2 = speed_a2*cos_a2;
+  const double rate_of_slope_2_by_y = twice_velocity_y - rate_of_sin_a2*k->twice_inner_arm;
+  const double velocity_x = one_by_determinant
+      *(slope_1_by_y*speed_a2_times_slope_2_by_a2 - slope_2_by_y*speed_a1_times_slope_1_by_a1);
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double rate_of_slope_1_by_a1 = rate_of_sin_a1
+      *(k->inner_arm_squared_times_2*cos_a1 + k->twice_inner_arm*x_minus_pivot_1_x)
+      + (velocity_x*sin_a1 - velocity_y*cos_a1)*k->twice_inner_arm
+      - (k->inner_arm_squared_times_2*sin_a1 + k->twice_inner_arm*y_minus_pivot_1_y)*rate_of_cos_a1;
+  const double twice_velocity_x = 2.0*velocity_x;
+  const double rate_of_slope_1_by_x = twice_velocity_x - rate_of_cos_a1*k->twice_inner_arm;
+  const double rate_of_cos_a2 = -speed_a2*sin_a2;
+  const double rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a2*k->twice_inner_arm;
+  const double rate_of_determinant = rate_of_slope_1_by_x*slope_2_by_y + rate_of_slope_2_by_y*slope_1_by_x
+      - rate_of_slope_1_by_y*slope_2_by_x - rate_of_slope_2_by_x*slope_1_by_y;
+  const double rate_of_slope_2_by_a2 = rate_of_sin_a2
+      *(k->inner_arm_squared_times_2*cos_a2 + k->twice_inner_arm*x_minus_pivot_2_x)
+      + (velocity_x*sin_a2 - velocity_y*cos_a2)*k->twice_inner_arm
+      - (k->inner_arm_squared_times_2*sin_a2 + k->twice_inner_arm*y_minus_pivot_2_y)*rate_of_cos_a2;
+  accelerations[0] = one_by_determinant
+      *((-rate_of_slope_1_by_a1*slope_2_by_y - rate_of_slope_2_by_y*slope_1_by_a1)*speed_a1
+      + (rate_of_slope_1_by_y*slope_2_by_a2 + rate_of_slope_2_by_a2*slope_1_by_y)*speed_a2)
+      - one_by_determinant*rate_of_determinant*velocity_x;
+  accelerations[1] = one_by_determinant
+      *((rate_of_slope_1_by_a1*slope_2_by_x + rate_of_slope_2_by_x*slope_1_by_a1)*speed_a1
+      + (-rate_of_slope_1_by_x*slope_2_by_a2 - rate_of_slope_2_by_a2*slope_1_by_x)*speed_a2)
+      - one_by_determinant*rate_of_determinant*velocity_y;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -592,6 +691,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double one_by_outer_arm_squared = 1.0/(p->outer_arm*p->outer_arm);
   const double twice_inner_arm = 2.0*p->inner_arm;
   const double sum_in_slope_1_by_x = p->tcp_link_distance - 2.0*p->displacement;
+  const double inner_arm_squared_times_2 = 2.0*p->inner_arm*p->inner_arm;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -619,6 +719,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.one_by_outer_arm_squared = one_by_outer_arm_squared;
   made.twice_inner_arm = twice_inner_arm;
   made.sum_in_slope_1_by_x = sum_in_slope_1_by_x;
+  made.inner_arm_squared_times_2 = inner_arm_squared_times_2;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(p2c_type2_machine *)machine = made;
   return SOFTKIN_OK;
@@ -656,6 +757,7 @@ const softkin_mechanism p2c_type2_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -698,6 +800,17 @@ softkin_status p2c_type2_branches(const p2c_type2_machine *machine, const softki
 softkin_status p2c_type2_jacobian(const p2c_type2_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&p2c_type2_mechanism, machine, axes, rows, why);
+}
+
+softkin_status p2c_type2_axis_velocities(const p2c_type2_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&p2c_type2_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status p2c_type2_axis_accelerations(const p2c_type2_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&p2c_type2_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status p2c_type2_singularity(const p2c_type2_machine *machine, const double *axes, double *margins,

@@ -335,6 +335,79 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const p2x_type1_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = axis_a1 - k->offset_a1;
+  const double pivot_1_x = a1 + k->tcp_offset_1; /* rod 1: centre about which it swings */
+  const double a2 = axis_a2 - k->offset_a2;
+  const double pivot_2_x = a2 - k->tcp_offset_2; /* rod 2: centre about which it swings */
+  const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
+  /* squared length of the normal */
+  const double normal_square = k->centre_1_to_2_y_squared + centre_1_to_2_x*centre_1_to_2_x;
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  const double between_centres = softkin_root(normal_square); /* distance between the centres */
+  const double one_by_normal_square = 1.0/normal_square;
+  /* square of the height over the line of the centres */
+  const double height_square = 0.25*(k->arm_length_1_minus_arm_length_2 + between_centres)
+      *(k->arm_length_1_minus_arm_length_2 - between_centres)*(between_centres + k->machine_scale)
+      *(between_centres - k->machine_scale)*one_by_normal_square;
+  /* the rods do not meet */
+  if (!(height_square >= -k->arm_length_1_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
+  /* foot of the perpendicular, as a fraction of this distance */
+  const double foot_fraction = 0.5*(normal_square + k->product_in_foot_fraction)*one_by_normal_square;
+  const double foot_y = k->centre_1_to_2_y*foot_fraction;
+  const double y = foot_y + k->rail_y_1 + centre_1_to_2_x*height_by_normal;
+  const double slope_1_by_y = 2.0*(y - k->rail_y_1);
+  /* foot of the perpendicular, seen from centre 1 */
+  const double foot_x = centre_1_to_2_x*foot_fraction;
+  const double x = foot_x + pivot_1_x - k->centre_1_to_2_y*height_by_normal;
+  const double slope_2_by_x = 2.0*(x - pivot_2_x);
+  const double slope_1_by_y_times_slope_2_by_x = slope_1_by_y*slope_2_by_x;
+  const double slope_1_by_x = 2.0*(x - pivot_1_x);
+  const double slope_2_by_y = 2.0*(y - k->rail_y_2);
+  const double slope_1_by_x_times_slope_2_by_y = slope_1_by_x*slope_2_by_y;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x;
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > k->machine_scale_squared_times_free_angle)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double one_by_determinant_divisor = 1.0/determinant;
+  const double product_in_velocity_y = one_by_determinant_divisor*(speed_a1 - speed_a2);
+  const double velocity_y = -product_in_velocity_y*slope_1_by_x*slope_2_by_x;
+  const double rate_of_slope_1_by_y = 2.0*velocity_y;
+  const double velocity_x = one_by_determinant_divisor
+      *(slope_1_by_x_times_slope_2_by_y*speed_a1 - slope_1_by_y_times_slope_2_by_x*speed_a2);
+  const double rate_of_slope_1_by_a1 = 2.0*(speed_a1 - velocity_x);
+  const double rate_of_slope_2_by_x = 2.0*(velocity_x - speed_a2);
+  const double rate_of_slope_2_by_x_times_slope_1_by_y = rate_of_slope_2_by_x*slope_1_by_y;
+  const double rate_of_slope_1_by_a1_times_slope_2_by_y = rate_of_slope_1_by_a1*slope_2_by_y;
+  const double rate_of_determinant = rate_of_slope_1_by_y*(slope_1_by_x - slope_2_by_x)
+      - rate_of_slope_1_by_a1_times_slope_2_by_y - rate_of_slope_2_by_x_times_slope_1_by_y;
+  accelerations[0] = one_by_determinant_divisor
+      *((rate_of_slope_1_by_y*slope_1_by_x - rate_of_slope_1_by_a1_times_slope_2_by_y)*speed_a1
+      + (-rate_of_slope_2_by_x_times_slope_1_by_y - rate_of_slope_1_by_y*slope_2_by_x)*speed_a2)
+      - one_by_determinant_divisor*rate_of_determinant*velocity_x;
+  accelerations[1] = product_in_velocity_y
+      *(rate_of_slope_1_by_a1*slope_2_by_x - rate_of_slope_2_by_x*slope_1_by_x)
+      - one_by_determinant_divisor*rate_of_determinant*velocity_y;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -510,6 +583,7 @@ const softkin_mechanism p2x_type1_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -552,6 +626,17 @@ softkin_status p2x_type1_branches(const p2x_type1_machine *machine, const softki
 softkin_status p2x_type1_jacobian(const p2x_type1_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&p2x_type1_mechanism, machine, axes, rows, why);
+}
+
+softkin_status p2x_type1_axis_velocities(const p2x_type1_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&p2x_type1_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status p2x_type1_axis_accelerations(const p2x_type1_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&p2x_type1_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status p2x_type1_singularity(const p2x_type1_machine *machine, const double *axes, double *margins,

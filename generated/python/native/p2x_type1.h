@@ -143,6 +143,15 @@ softkin_status p2x_type1_branches(const p2x_type1_machine *machine, const softki
 softkin_status p2x_type1_jacobian(const p2x_type1_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 2 numbers, rows as in the Jacobian. */
+softkin_status p2x_type1_axis_velocities(const p2x_type1_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 2 numbers, at the velocities that the axes have.
+ * */
+softkin_status p2x_type1_axis_accelerations(const p2x_type1_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 3 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status p2x_type1_singularity(const p2x_type1_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

@@ -242,6 +242,46 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const p2x_type2_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = axis_a1 - k->offset_a1;
+  const double a2 = axis_a2 - k->offset_a2;
+  /* rod 1: centre about which it swings */
+  const double pivot_1_x = -0.5*(a1 + k->tcp_link_distance - a2);
+  /* the mirror that the machine does not have */
+  if (!(pivot_1_x >= -k->machine_scale_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the mirror that the machine does not have", "", 0.0, 0);
+  }
+  /* quadratic equation for y: rod 1 */
+  const double radicand_y = (k->arm_length + pivot_1_x)*(k->arm_length - pivot_1_x);
+  /* rod 1 cannot reach */
+  if (!(radicand_y >= -k->arm_length_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "rod 1 cannot reach", "u",
+        fabs(pivot_1_x) - k->arm_length, 0);
+  }
+  const double y = softkin_root(radicand_y)*k->assembly_sign;
+  const double slope_2_by_y = 2.0*y;
+  /* nothing controls the plate */
+  if (!(fabs(slope_2_by_y) > k->machine_scale_times_free_angle)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double speed_a1_minus_speed_a2 = speed_a1 - speed_a2;
+  const double rate_of_slope_2_by_a1 = 0.5*speed_a1_minus_speed_a2;
+  const double speed_a1_minus_speed_a2_by_slope_2_by_y = speed_a1_minus_speed_a2/slope_2_by_y;
+  const double velocity_y = pivot_1_x*speed_a1_minus_speed_a2_by_slope_2_by_y;
+  const double rate_of_slope_2_by_y = 2.0*velocity_y;
+  accelerations[0] = 0.0;
+  accelerations[1] = -rate_of_slope_2_by_a1*speed_a1_minus_speed_a2_by_slope_2_by_y
+      - rate_of_slope_2_by_y*velocity_y/slope_2_by_y;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const p2x_type2_parameters *p = parameters;
@@ -320,6 +360,7 @@ const softkin_mechanism p2x_type2_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void p2x_type2_defaults(p2x_type2_parameters *parameters) {
@@ -361,6 +402,17 @@ softkin_status p2x_type2_branches(const p2x_type2_machine *machine, const softki
 softkin_status p2x_type2_jacobian(const p2x_type2_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&p2x_type2_mechanism, machine, axes, rows, why);
+}
+
+softkin_status p2x_type2_axis_velocities(const p2x_type2_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&p2x_type2_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status p2x_type2_axis_accelerations(const p2x_type2_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&p2x_type2_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status p2x_type2_singularity(const p2x_type2_machine *machine, const double *axes, double *margins,

@@ -188,6 +188,19 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The quantities beside the axes that have limits. */
 static softkin_status find_quantities(const void *machine, const double *axes, double *values,
     softkin_refusal *why) {
@@ -274,6 +287,7 @@ const softkin_mechanism p2y_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .quantities = find_quantities,
 };
 
@@ -315,6 +329,17 @@ softkin_status p2y_branches(const p2y_machine *machine, const softkin_frame *fra
 softkin_status p2y_jacobian(const p2y_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&p2y_mechanism, machine, axes, rows, why);
+}
+
+softkin_status p2y_axis_velocities(const p2y_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&p2y_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status p2y_axis_accelerations(const p2y_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&p2y_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status p2y_singularity(const p2y_machine *machine, const double *axes, double *margins,

@@ -507,6 +507,77 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const palletizer_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3],
+      speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2], speed_a4 = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2,
+      axis_a3, axis_a4}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_a1 = cos(a1);
+  const double rate_of_sin_a1 = speed_a1*cos_a1;
+  const double sin_a1 = sin(a1);
+  const double rate_of_y_at_a2 = rate_of_sin_a1*k->shoulder_offset;
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double sin_a2 = sin(a2);
+  const double cos_a2 = cos(a2);
+  const double rate_of_sin_a2 = speed_a2*cos_a2;
+  const double rate_of_r23_at_a2 = rate_of_sin_a1*sin_a2 + rate_of_sin_a2*sin_a1;
+  const double rate_of_y_at_a2_a3 = rate_of_y_at_a2 + k->link_length_1*rate_of_r23_at_a2;
+  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double cos_a3 = cos(a3);
+  const double sin_a3 = sin(a3);
+  const double rate_of_cos_a3 = -speed_a3*sin_a3;
+  const double rate_of_r21_at_a3 = rate_of_sin_a1*cos_a3 + rate_of_cos_a3*sin_a1;
+  const double rate_of_y_at_a3 = rate_of_y_at_a2_a3 + k->link_length_2*rate_of_r21_at_a3;
+  const double rate_of_y_at_a4 = rate_of_y_at_a3 + rate_of_sin_a1*k->wrist_offset_x;
+  const double rate_of_cos_a1 = -speed_a1*sin_a1;
+  const double rate_of_cos_a2 = -speed_a2*sin_a2;
+  const double rate_of_z_at_a2_a3 = k->link_length_1*rate_of_cos_a2;
+  const double rate_of_x_at_a2 = rate_of_cos_a1*k->shoulder_offset;
+  const double rate_of_r13_at_a2 = rate_of_sin_a2*cos_a1 + rate_of_cos_a1*sin_a2;
+  const double rate_of_x_at_a2_a3 = rate_of_x_at_a2 + k->link_length_1*rate_of_r13_at_a2;
+  const double rate_of_r11_at_a3 = rate_of_cos_a3*cos_a1 + rate_of_cos_a1*cos_a3;
+  const double rate_of_x_at_a3 = rate_of_x_at_a2_a3 + k->link_length_2*rate_of_r11_at_a3;
+  const double rate_of_x_at_a4 = rate_of_x_at_a3 + rate_of_cos_a1*k->wrist_offset_x;
+  const double z_at_a2_a3 = k->base_height + k->link_length_1*cos_a2;
+  const double z_at_a3 = z_at_a2_a3 - k->link_length_2*sin_a3;
+  const double shared_sum = (k->base_height - z_at_a2_a3)*speed_a2 + speed_a3*(z_at_a2_a3 - z_at_a3);
+  const double speed_a2_minus_speed_a3 = speed_a2 - speed_a3;
+  const double speed_a2_minus_speed_a3_times_cos_a1 = speed_a2_minus_speed_a3*cos_a1;
+  const double speed_a2_minus_speed_a3_times_sin_a1 = speed_a2_minus_speed_a3*sin_a1;
+  const double rate_of_sin_a3 = speed_a3*cos_a3;
+  const double rate_of_z_at_a3 = rate_of_z_at_a2_a3 - k->link_length_2*rate_of_sin_a3;
+  const double speed_a3_times_rate_of_z_at_a3 = rate_of_z_at_a3*speed_a3;
+  const double y_at_a2 = k->shoulder_offset*sin_a1;
+  const double r23_at_a2 = sin_a1*sin_a2;
+  const double y_at_a2_a3 = y_at_a2 + k->link_length_1*r23_at_a2;
+  const double r21_at_a3 = cos_a3*sin_a1;
+  const double y_at_a3 = y_at_a2_a3 + k->link_length_2*r21_at_a3;
+  const double x_at_a2 = k->shoulder_offset*cos_a1;
+  const double r13_at_a2 = cos_a1*sin_a2;
+  const double x_at_a2_a3 = x_at_a2 + k->link_length_1*r13_at_a2;
+  const double r11_at_a3 = cos_a1*cos_a3;
+  const double x_at_a3 = x_at_a2_a3 + k->link_length_2*r11_at_a3;
+  const double shared_sum_2 = (rate_of_x_at_a2*speed_a2 - rate_of_x_at_a3*speed_a3)*cos_a1
+      + rate_of_cos_a1*(speed_a2*(x_at_a2 - x_at_a2_a3) + speed_a3*(x_at_a2_a3 - x_at_a3))
+      + (rate_of_y_at_a2*speed_a2 - rate_of_y_at_a3*speed_a3)*sin_a1
+      - rate_of_sin_a1*((y_at_a2_a3 - y_at_a2)*speed_a2 + (y_at_a3 - y_at_a2_a3)*speed_a3);
+  accelerations[0] = speed_a3_times_rate_of_z_at_a3*cos_a1
+      + rate_of_z_at_a2_a3*speed_a2_minus_speed_a3_times_cos_a1 - rate_of_cos_a1*shared_sum
+      - rate_of_y_at_a4*speed_a1;
+  accelerations[1] = rate_of_x_at_a4*speed_a1 + rate_of_z_at_a2_a3*speed_a2_minus_speed_a3_times_sin_a1
+      + speed_a3_times_rate_of_z_at_a3*sin_a1 - rate_of_sin_a1*shared_sum;
+  accelerations[2] = shared_sum_2 - rate_of_x_at_a2_a3*speed_a2_minus_speed_a3_times_cos_a1
+      - rate_of_y_at_a2_a3*speed_a2_minus_speed_a3_times_sin_a1;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The quantities beside the axes that have limits. */
 static softkin_status find_quantities(const void *machine, const double *axes, double *values,
     softkin_refusal *why) {
@@ -803,6 +874,7 @@ const softkin_mechanism palletizer_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .quantities = find_quantities,
     .every_branch = find_every_branch,
 };
@@ -846,6 +918,17 @@ softkin_status palletizer_branches(const palletizer_machine *machine, const soft
 softkin_status palletizer_jacobian(const palletizer_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&palletizer_mechanism, machine, axes, rows, why);
+}
+
+softkin_status palletizer_axis_velocities(const palletizer_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&palletizer_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status palletizer_axis_accelerations(const palletizer_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&palletizer_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status palletizer_singularity(const palletizer_machine *machine, const double *axes, double *margins,

@@ -317,6 +317,29 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const pcc_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], speed_a1 = speeds[0], speed_a2 = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, axis_a1, axis_a2}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double rate_of_sin_a1 = cos(a1)*speed_a1;
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double rate_of_sin_a2 = cos(a2)*speed_a2;
+  const double rate_of_cos_a1 = -sin(a1)*speed_a1;
+  const double rate_of_cos_a2 = -sin(a2)*speed_a2;
+  const double link_length_2_times_speed_a2 = k->link_length_2*speed_a2;
+  const double link_length_1_times_speed_a1 = k->link_length_1*speed_a1;
+  accelerations[0] = -link_length_1_times_speed_a1*rate_of_sin_a1
+      - link_length_2_times_speed_a2*rate_of_sin_a2;
+  accelerations[1] = link_length_1_times_speed_a1*rate_of_cos_a1
+      + link_length_2_times_speed_a2*rate_of_cos_a2;
+  return SOFTKIN_OK;
+}
+
 /* The quantities beside the axes that have limits. */
 static softkin_status find_quantities(const void *machine, const double *axes, double *values,
     softkin_refusal *why) {
@@ -473,6 +496,7 @@ const softkin_mechanism pcc_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .quantities = find_quantities,
     .every_branch = find_every_branch,
 };
@@ -515,6 +539,17 @@ softkin_status pcc_branches(const pcc_machine *machine, const softkin_frame *fra
 softkin_status pcc_jacobian(const pcc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&pcc_mechanism, machine, axes, rows, why);
+}
+
+softkin_status pcc_axis_velocities(const pcc_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&pcc_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status pcc_axis_accelerations(const pcc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&pcc_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status pcc_singularity(const pcc_machine *machine, const double *axes, double *margins,

@@ -134,6 +134,15 @@ softkin_status pcc_branches(const pcc_machine *machine, const softkin_frame *fra
 softkin_status pcc_jacobian(const pcc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 2 numbers, rows as in the Jacobian. */
+softkin_status pcc_axis_velocities(const pcc_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 2 numbers, at the velocities that the axes have.
+ * */
+softkin_status pcc_axis_accelerations(const pcc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status pcc_singularity(const pcc_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

@@ -392,11 +392,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: its effective length is too short", "", 0.0, 0);
   }
   /* law of cosines for a1 (rod 1): 1 - cosine, times a scale */
-  const double one_less_cos_a1 = (effective_a1 - k->arm_length_1_plus_rod_length_1)
-      *(k->arm_length_1_minus_rod_length_1 - effective_a1);
+  const double one_less_cos_a1 = (k->arm_length_1_plus_rod_length_1 - effective_a1)
+      *(effective_a1 + k->rod_length_1_minus_arm_length_1);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_a1 = (k->arm_length_1_minus_rod_length_1 + effective_a1)
-      *(k->arm_length_1_plus_rod_length_1 + effective_a1);
+  const double one_plus_cos_a1 = (k->arm_length_1_plus_rod_length_1 + effective_a1)
+      *(effective_a1 - k->rod_length_1_minus_arm_length_1);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a1 = one_less_cos_a1 + one_plus_cos_a1;
   const double divisor_of_cos_a1 = sum_a1 > 0.0 ? sum_a1 : 1.0;
@@ -404,9 +404,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a1: out of reach */
   if (!(fabs(cos_swing_a1) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A1: out of reach", "u",
-        (effective_a1 - k->arm_length_1_plus_rod_length_1 > fabs(k->arm_length_1_minus_rod_length_1)
+        (effective_a1 - k->arm_length_1_plus_rod_length_1 > fabs(k->rod_length_1_minus_arm_length_1)
         - effective_a1 ? effective_a1 - k->arm_length_1_plus_rod_length_1
-        : fabs(k->arm_length_1_minus_rod_length_1) - effective_a1), 0);
+        : fabs(k->rod_length_1_minus_arm_length_1) - effective_a1), 0);
   }
   const double arm_2_x = k->platform_2_x*cos_heading - k->platform_2_y*sin_heading;
   const double span_2_x = arm_2_x + x - k->base_2_x; /* rod 2: known part of its vector */
@@ -419,11 +419,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: its effective length is too short", "", 0.0, 0);
   }
   /* law of cosines for a2 (rod 2): 1 - cosine, times a scale */
-  const double one_less_cos_a2 = (effective_a2 - k->arm_length_2_plus_rod_length_2)
-      *(k->arm_length_2_minus_rod_length_2 - effective_a2);
+  const double one_less_cos_a2 = (k->arm_length_2_plus_rod_length_2 - effective_a2)
+      *(effective_a2 + k->rod_length_2_minus_arm_length_2);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_a2 = (k->arm_length_2_minus_rod_length_2 + effective_a2)
-      *(k->arm_length_2_plus_rod_length_2 + effective_a2);
+  const double one_plus_cos_a2 = (k->arm_length_2_plus_rod_length_2 + effective_a2)
+      *(effective_a2 - k->rod_length_2_minus_arm_length_2);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a2 = one_less_cos_a2 + one_plus_cos_a2;
   const double divisor_of_cos_a2 = sum_a2 > 0.0 ? sum_a2 : 1.0;
@@ -431,9 +431,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a2: out of reach */
   if (!(fabs(cos_swing_a2) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A2: out of reach", "u",
-        (effective_a2 - k->arm_length_2_plus_rod_length_2 > fabs(k->arm_length_2_minus_rod_length_2)
+        (effective_a2 - k->arm_length_2_plus_rod_length_2 > fabs(k->rod_length_2_minus_arm_length_2)
         - effective_a2 ? effective_a2 - k->arm_length_2_plus_rod_length_2
-        : fabs(k->arm_length_2_minus_rod_length_2) - effective_a2), 0);
+        : fabs(k->rod_length_2_minus_arm_length_2) - effective_a2), 0);
   }
   const double arm_3_x = k->platform_3_x*cos_heading - k->platform_3_y*sin_heading;
   const double span_3_x = arm_3_x + x - k->base_3_x; /* rod 3: known part of its vector */
@@ -446,11 +446,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: its effective length is too short", "", 0.0, 0);
   }
   /* law of cosines for a3 (rod 3): 1 - cosine, times a scale */
-  const double one_less_cos_a3 = (effective_a3 - k->arm_length_3_plus_rod_length_3)
-      *(k->arm_length_3_minus_rod_length_3 - effective_a3);
+  const double one_less_cos_a3 = (k->arm_length_3_plus_rod_length_3 - effective_a3)
+      *(effective_a3 + k->rod_length_3_minus_arm_length_3);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_a3 = (k->arm_length_3_minus_rod_length_3 + effective_a3)
-      *(k->arm_length_3_plus_rod_length_3 + effective_a3);
+  const double one_plus_cos_a3 = (k->arm_length_3_plus_rod_length_3 + effective_a3)
+      *(effective_a3 - k->rod_length_3_minus_arm_length_3);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_a3 = one_less_cos_a3 + one_plus_cos_a3;
   const double divisor_of_cos_a3 = sum_a3 > 0.0 ? sum_a3 : 1.0;
@@ -458,9 +458,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* a3: out of reach */
   if (!(fabs(cos_swing_a3) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (effective_a3 - k->arm_length_3_plus_rod_length_3 > fabs(k->arm_length_3_minus_rod_length_3)
+        (effective_a3 - k->arm_length_3_plus_rod_length_3 > fabs(k->rod_length_3_minus_arm_length_3)
         - effective_a3 ? effective_a3 - k->arm_length_3_plus_rod_length_3
-        : fabs(k->arm_length_3_minus_rod_length_3) - effective_a3), 0);
+        : fabs(k->rod_length_3_minus_arm_length_3) - effective_a3), 0);
   }
   const double sign_elbow_1 = sigma_elbow_1; /* elbow_1: +1 right, -1 left */
   /* sine squared, times the squared scale */
@@ -754,6 +754,139 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const planar_3rrr_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], speed_a1 = speeds[0],
+      speed_a2 = speeds[1], speed_a3 = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3,
+      k->start_x, k->start_y}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double start_along = k->start_r11 + k->start_r22; /* nearest rotation about Z */
+  const double start_across = k->start_r21 - k->start_r12;
+  const double start_length = sqrt(start_across*start_across + start_along*start_along);
+  /* the tool points exactly the opposite way */
+  if (!(start_length > 2e-12)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "the tool points exactly the opposite way", "", 0.0, 0);
+  }
+  const double start_cos_heading = start_along/start_length;
+  const double start_sin_heading = start_across/start_length;
+  /* pose of the platform, by Newton's method from the start */
+  double results[14];
+  const double arguments[] = {axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k->start_x,
+      k->start_y};
+  const softkin_status status = find_platform(k, arguments, results, why);
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  const double found_x = results[0], found_y = results[1], found_cos_heading = results[2],
+      found_sin_heading = results[3], determinant = results[4];
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > 2e-12)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double sin_a1 = sin(a1);
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double sin_a2 = sin(a2);
+  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double sin_a3 = sin(a3);
+  const double cos_a1 = cos(a1);
+  const double cos_a2 = cos(a2);
+  const double cos_a3 = cos(a3);
+  const double arm_1_x = found_cos_heading*k->platform_1_x - found_sin_heading*k->platform_1_y;
+  /* leg 1: vector from its joint on the base to its joint on the platform */
+  const double rod_1_x = arm_1_x + found_x - k->base_1_x - k->arm_length_1*cos_a1;
+  const double along_1_x = k->one_by_divisor_1_2*rod_1_x;
+  const double arm_1_y = found_cos_heading*k->platform_1_y + found_sin_heading*k->platform_1_x;
+  const double rod_1_y = arm_1_y + found_y - k->base_1_y - k->arm_length_1*sin_a1;
+  const double along_1_y = k->one_by_divisor_1_2*rod_1_y;
+  const double moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)*k->one_by_platform_radius;
+  const double arm_2_x = found_cos_heading*k->platform_2_x - found_sin_heading*k->platform_2_y;
+  /* leg 2: vector from its joint on the base to its joint on the platform */
+  const double rod_2_x = arm_2_x + found_x - k->base_2_x - k->arm_length_2*cos_a2;
+  const double along_2_x = k->one_by_divisor_2_2*rod_2_x;
+  const double arm_2_y = found_cos_heading*k->platform_2_y + found_sin_heading*k->platform_2_x;
+  const double rod_2_y = arm_2_y + found_y - k->base_2_y - k->arm_length_2*sin_a2;
+  const double along_2_y = k->one_by_divisor_2_2*rod_2_y;
+  const double moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)*k->one_by_platform_radius;
+  const double arm_3_x = found_cos_heading*k->platform_3_x - found_sin_heading*k->platform_3_y;
+  /* leg 3: vector from its joint on the base to its joint on the platform */
+  const double rod_3_x = arm_3_x + found_x - k->base_3_x - k->arm_length_3*cos_a3;
+  const double along_3_x = k->one_by_divisor_3_2*rod_3_x;
+  const double arm_3_y = found_cos_heading*k->platform_3_y + found_sin_heading*k->platform_3_x;
+  const double rod_3_y = arm_3_y + found_y - k->base_3_y - k->arm_length_3*sin_a3;
+  const double along_3_y = k->one_by_divisor_3_2*rod_3_y;
+  const double moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)*k->one_by_platform_radius;
+  /* twist of the platform per velocity of each axis */
+  double system[3][4] = {{along_1_x, along_1_y, moment_1_z,
+      -(along_1_x*sin_a1 - along_1_y*cos_a1)*k->arm_length_1*speed_a1},
+      {along_2_x, along_2_y, moment_2_z, -(along_2_x*sin_a2 - along_2_y*cos_a2)*k->arm_length_2*speed_a2},
+      {along_3_x, along_3_y, moment_3_z, -(along_3_x*sin_a3 - along_3_y*cos_a3)*k->arm_length_3*speed_a3}};
+  softkin_solve(&system[0][0], 3, 1);
+  const double column_1_vx = system[0][3], column_1_vy = system[1][3], column_1_wz = system[2][3];
+  const double rate_of_cos_a1_2 = -speed_a1*sin_a1;
+  const double rate_of_arm_1_x = (-found_cos_heading*k->platform_1_y_by_platform_radius
+      - found_sin_heading*k->platform_1_x_by_platform_radius)*column_1_wz;
+  const double rate_of_rod_1_x = column_1_vx + rate_of_arm_1_x - k->arm_length_1*rate_of_cos_a1_2;
+  const double rate_of_along_1_x = k->one_by_divisor_1_2*rate_of_rod_1_x;
+  const double rate_of_sin_a1_2 = speed_a1*cos_a1;
+  const double rate_of_arm_1_y = column_1_wz
+      *(found_cos_heading*k->platform_1_x_by_platform_radius
+      - found_sin_heading*k->platform_1_y_by_platform_radius);
+  const double rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y - k->arm_length_1*rate_of_sin_a1_2;
+  const double rate_of_along_1_y = k->one_by_divisor_1_2*rate_of_rod_1_y;
+  const double rate_of_moment_1_z = (along_1_y*rate_of_arm_1_x + arm_1_x*rate_of_along_1_y
+      - along_1_x*rate_of_arm_1_y - arm_1_y*rate_of_along_1_x)*k->one_by_platform_radius;
+  const double rate_of_cos_a2_2 = -speed_a2*sin_a2;
+  const double rate_of_arm_2_x = (-found_cos_heading*k->platform_2_y_by_platform_radius
+      - found_sin_heading*k->platform_2_x_by_platform_radius)*column_1_wz;
+  const double rate_of_rod_2_x = column_1_vx + rate_of_arm_2_x - k->arm_length_2*rate_of_cos_a2_2;
+  const double rate_of_along_2_x = k->one_by_divisor_2_2*rate_of_rod_2_x;
+  const double rate_of_sin_a2_2 = speed_a2*cos_a2;
+  const double rate_of_arm_2_y = column_1_wz
+      *(found_cos_heading*k->platform_2_x_by_platform_radius
+      - found_sin_heading*k->platform_2_y_by_platform_radius);
+  const double rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y - k->arm_length_2*rate_of_sin_a2_2;
+  const double rate_of_along_2_y = k->one_by_divisor_2_2*rate_of_rod_2_y;
+  const double rate_of_moment_2_z = (along_2_y*rate_of_arm_2_x + arm_2_x*rate_of_along_2_y
+      - along_2_x*rate_of_arm_2_y - arm_2_y*rate_of_along_2_x)*k->one_by_platform_radius;
+  const double rate_of_cos_a3_2 = -speed_a3*sin_a3;
+  const double rate_of_arm_3_x = (-found_cos_heading*k->platform_3_y_by_platform_radius
+      - found_sin_heading*k->platform_3_x_by_platform_radius)*column_1_wz;
+  const double rate_of_rod_3_x = column_1_vx + rate_of_arm_3_x - k->arm_length_3*rate_of_cos_a3_2;
+  const double rate_of_along_3_x = k->one_by_divisor_3_2*rate_of_rod_3_x;
+  const double rate_of_sin_a3_2 = speed_a3*cos_a3;
+  const double rate_of_arm_3_y = column_1_wz
+      *(found_cos_heading*k->platform_3_x_by_platform_radius
+      - found_sin_heading*k->platform_3_y_by_platform_radius);
+  const double rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y - k->arm_length_3*rate_of_sin_a3_2;
+  const double rate_of_along_3_y = k->one_by_divisor_3_2*rate_of_rod_3_y;
+  const double rate_of_moment_3_z = (along_3_y*rate_of_arm_3_x + arm_3_x*rate_of_along_3_y
+      - along_3_x*rate_of_arm_3_y - arm_3_y*rate_of_along_3_x)*k->one_by_platform_radius;
+  double system_of_2[3][4] = {{along_1_x, along_1_y, moment_1_z,
+      (along_1_y*rate_of_cos_a1_2 + rate_of_along_1_y*cos_a1 - along_1_x*rate_of_sin_a1_2
+      - rate_of_along_1_x*sin_a1)*k->arm_length_1*speed_a1 - column_1_vx*rate_of_along_1_x
+      - column_1_vy*rate_of_along_1_y - column_1_wz*rate_of_moment_1_z},
+      {along_2_x, along_2_y, moment_2_z,
+      (along_2_y*rate_of_cos_a2_2 + rate_of_along_2_y*cos_a2 - along_2_x*rate_of_sin_a2_2
+      - rate_of_along_2_x*sin_a2)*k->arm_length_2*speed_a2 - column_1_vx*rate_of_along_2_x
+      - column_1_vy*rate_of_along_2_y - column_1_wz*rate_of_moment_2_z},
+      {along_3_x, along_3_y, moment_3_z,
+      (along_3_y*rate_of_cos_a3_2 + rate_of_along_3_y*cos_a3 - along_3_x*rate_of_sin_a3_2
+      - rate_of_along_3_x*sin_a3)*k->arm_length_3*speed_a3 - column_1_vx*rate_of_along_3_x
+      - column_1_vy*rate_of_along_3_y - column_1_wz*rate_of_moment_3_z}};
+  softkin_solve(&system_of_2[0][0], 3, 1);
+  const double rate_of_column_1_vx = system_of_2[0][3], rate_of_column_1_vy = system_of_2[1][3],
+      rate_of_column_1_wz = system_of_2[2][3];
+  accelerations[0] = rate_of_column_1_vx;
+  accelerations[1] = rate_of_column_1_vy;
+  accelerations[2] = k->one_by_platform_radius*rate_of_column_1_wz;
+  return SOFTKIN_OK;
+}
+
 /* The machine with another start of forward kinematics. */
 static void start_at(const void *machine, const softkin_frame *start, void *moved) {
   planar_3rrr_machine *k = moved;
@@ -960,14 +1093,20 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double within = 1e-11*machine_scale; /* tolerance of the leg lengths */
   const double cos_home_heading_2 = cos(SOFTKIN_DEGREE*p->home_heading);
   const double sin_home_heading_2 = sin(SOFTKIN_DEGREE*p->home_heading);
+  /* leg 1 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_1_2 = p->rod_length_1 > 1e-9*machine_scale ? p->rod_length_1 : 1.0;
+  /* leg 2 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_2_2 = p->rod_length_2 > 1e-9*machine_scale ? p->rod_length_2 : 1.0;
+  /* leg 3 as a line: unit vector, and its moment about the platform's origin */
+  const double divisor_3_2 = p->rod_length_3 > 1e-9*machine_scale ? p->rod_length_3 : 1.0;
   const double machine_scale_times_shortest_link = 1e-9*machine_scale;
   const double machine_scale_times_plane = 1e-6*machine_scale;
   const double arm_length_1_times_shortest_link = 1e-9*p->arm_length_1;
-  const double arm_length_1_minus_rod_length_1 = p->arm_length_1 - p->rod_length_1;
+  const double rod_length_1_minus_arm_length_1 = p->rod_length_1 - p->arm_length_1;
   const double arm_length_2_times_shortest_link = 1e-9*p->arm_length_2;
-  const double arm_length_2_minus_rod_length_2 = p->arm_length_2 - p->rod_length_2;
+  const double rod_length_2_minus_arm_length_2 = p->rod_length_2 - p->arm_length_2;
   const double arm_length_3_times_shortest_link = 1e-9*p->arm_length_3;
-  const double arm_length_3_minus_rod_length_3 = p->arm_length_3 - p->rod_length_3;
+  const double rod_length_3_minus_arm_length_3 = p->rod_length_3 - p->arm_length_3;
   const double one_by_platform_radius = 1.0/platform_radius;
   const double one_by_machine_scale_squared = 1.0/(machine_scale*machine_scale);
   const double one_by_rod_length_1 = 1.0/p->rod_length_1;
@@ -977,6 +1116,15 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_length_2_plus_rod_length_2 = p->arm_length_2 + p->rod_length_2;
   const double arm_length_3_plus_rod_length_3 = p->arm_length_3 + p->rod_length_3;
   const double quotient_in_determinant = 1.0/(p->rod_length_1*p->rod_length_2*p->rod_length_3);
+  const double one_by_divisor_1_2 = 1.0/divisor_1_2;
+  const double one_by_divisor_2_2 = 1.0/divisor_2_2;
+  const double one_by_divisor_3_2 = 1.0/divisor_3_2;
+  const double platform_1_x_by_platform_radius = p->platform_1_x/platform_radius;
+  const double platform_1_y_by_platform_radius = p->platform_1_y/platform_radius;
+  const double platform_2_x_by_platform_radius = p->platform_2_x/platform_radius;
+  const double platform_2_y_by_platform_radius = p->platform_2_y/platform_radius;
+  const double platform_3_x_by_platform_radius = p->platform_3_x/platform_radius;
+  const double platform_3_y_by_platform_radius = p->platform_3_y/platform_radius;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -1027,11 +1175,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_shortest_link = machine_scale_times_shortest_link;
   made.machine_scale_times_plane = machine_scale_times_plane;
   made.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link;
-  made.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1;
+  made.rod_length_1_minus_arm_length_1 = rod_length_1_minus_arm_length_1;
   made.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link;
-  made.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2;
+  made.rod_length_2_minus_arm_length_2 = rod_length_2_minus_arm_length_2;
   made.arm_length_3_times_shortest_link = arm_length_3_times_shortest_link;
-  made.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3;
+  made.rod_length_3_minus_arm_length_3 = rod_length_3_minus_arm_length_3;
   made.one_by_platform_radius = one_by_platform_radius;
   made.one_by_machine_scale_squared = one_by_machine_scale_squared;
   made.one_by_rod_length_1 = one_by_rod_length_1;
@@ -1041,6 +1189,15 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2;
   made.arm_length_3_plus_rod_length_3 = arm_length_3_plus_rod_length_3;
   made.quotient_in_determinant = quotient_in_determinant;
+  made.one_by_divisor_1_2 = one_by_divisor_1_2;
+  made.one_by_divisor_2_2 = one_by_divisor_2_2;
+  made.one_by_divisor_3_2 = one_by_divisor_3_2;
+  made.platform_1_x_by_platform_radius = platform_1_x_by_platform_radius;
+  made.platform_1_y_by_platform_radius = platform_1_y_by_platform_radius;
+  made.platform_2_x_by_platform_radius = platform_2_x_by_platform_radius;
+  made.platform_2_y_by_platform_radius = platform_2_y_by_platform_radius;
+  made.platform_3_x_by_platform_radius = platform_3_x_by_platform_radius;
+  made.platform_3_y_by_platform_radius = platform_3_y_by_platform_radius;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(planar_3rrr_machine *)machine = made;
   return SOFTKIN_OK;
@@ -1079,6 +1236,7 @@ const softkin_mechanism planar_3rrr_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .start_at = start_at,
     .forward_from = find_forward_from,
 };
@@ -1147,6 +1305,17 @@ softkin_status planar_3rrr_branches(const planar_3rrr_machine *machine, const so
 softkin_status planar_3rrr_jacobian(const planar_3rrr_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&planar_3rrr_mechanism, machine, axes, rows, why);
+}
+
+softkin_status planar_3rrr_axis_velocities(const planar_3rrr_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&planar_3rrr_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status planar_3rrr_axis_accelerations(const planar_3rrr_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&planar_3rrr_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status planar_3rrr_singularity(const planar_3rrr_machine *machine, const double *axes,

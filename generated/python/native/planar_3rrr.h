@@ -148,11 +148,14 @@ typedef struct {
       rod_length_2, rod_length_3, home_x, home_y, offset_a1, offset_a2, offset_a3, min_type2_margin,
       assembly_sign, start_x, start_y, start_r11, start_r12, start_r21, start_r22, within,
       cos_home_heading_2, sin_home_heading_2, machine_scale_times_shortest_link, machine_scale_times_plane,
-      arm_length_1_times_shortest_link, arm_length_1_minus_rod_length_1, arm_length_2_times_shortest_link,
-      arm_length_2_minus_rod_length_2, arm_length_3_times_shortest_link, arm_length_3_minus_rod_length_3,
+      arm_length_1_times_shortest_link, rod_length_1_minus_arm_length_1, arm_length_2_times_shortest_link,
+      rod_length_2_minus_arm_length_2, arm_length_3_times_shortest_link, rod_length_3_minus_arm_length_3,
       one_by_platform_radius, one_by_machine_scale_squared, one_by_rod_length_1, one_by_rod_length_2,
       one_by_rod_length_3, arm_length_1_plus_rod_length_1, arm_length_2_plus_rod_length_2,
-      arm_length_3_plus_rod_length_3, quotient_in_determinant;
+      arm_length_3_plus_rod_length_3, quotient_in_determinant, one_by_divisor_1_2, one_by_divisor_2_2,
+      one_by_divisor_3_2, platform_1_x_by_platform_radius, platform_1_y_by_platform_radius,
+      platform_2_x_by_platform_radius, platform_2_y_by_platform_radius, platform_3_x_by_platform_radius,
+      platform_3_y_by_platform_radius;
   bool single_a1, single_a2, single_a3, check_forward;
 } planar_3rrr_machine;
 
@@ -228,6 +231,15 @@ softkin_status planar_3rrr_jacobian_from(const planar_3rrr_machine *machine, con
     const softkin_frame *start, double *rows, softkin_refusal *why);
 softkin_status planar_3rrr_singularity_from(const planar_3rrr_machine *machine, const double *axes,
     const softkin_frame *start, double *margins, bool *is_singular, softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status planar_3rrr_axis_velocities(const planar_3rrr_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status planar_3rrr_axis_accelerations(const planar_3rrr_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 4 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status planar_3rrr_singularity(const planar_3rrr_machine *machine, const double *axes,

@@ -217,6 +217,29 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const polar_machine *k = machine;
+  const double axis_c = axes[0], axis_r = axes[1], speed_c = speeds[0], speed_r = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_c, speed_r, axis_c, axis_r}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double r = axis_r - k->offset_r;
+  /* R where the machine has no pose */
+  if (!(r >= -1e-9 && r <= 1000000001.0)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "R where the machine has no pose", "", 0.0, 0);
+  }
+  const double c = SOFTKIN_DEGREE*(axis_c - k->offset_c);
+  const double sin_c = sin(c);
+  const double cos_c = cos(c);
+  const double rate_of_sin_c = speed_c*cos_c;
+  const double rate_of_cos_c = -speed_c*sin_c;
+  accelerations[0] = rate_of_cos_c*speed_r + (-r*rate_of_sin_c - speed_r*sin_c)*speed_c;
+  accelerations[1] = rate_of_sin_c*speed_r + speed_c*(speed_r*cos_c + r*rate_of_cos_c);
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const polar_parameters *p = parameters;
@@ -284,6 +307,7 @@ const softkin_mechanism polar_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void polar_defaults(polar_parameters *parameters) {
@@ -324,6 +348,17 @@ softkin_status polar_branches(const polar_machine *machine, const softkin_frame 
 softkin_status polar_jacobian(const polar_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&polar_mechanism, machine, axes, rows, why);
+}
+
+softkin_status polar_axis_velocities(const polar_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&polar_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status polar_axis_accelerations(const polar_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&polar_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status polar_singularity(const polar_machine *machine, const double *axes, double *margins,

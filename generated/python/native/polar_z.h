@@ -133,6 +133,15 @@ softkin_status polar_z_branches(const polar_z_machine *machine, const softkin_fr
 softkin_status polar_z_jacobian(const polar_z_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status polar_z_axis_velocities(const polar_z_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status polar_z_axis_accelerations(const polar_z_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status polar_z_singularity(const polar_z_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

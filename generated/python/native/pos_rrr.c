@@ -655,6 +655,79 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const pos_rrr_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], speed_a1 = speeds[0],
+      speed_a2 = speeds[1], speed_a3 = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double q1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double cos_q1 = cos(q1);
+  const double sin_q1 = sin(q1);
+  const double rate_of_cos_q1 = -speed_a1*sin_q1;
+  const double rate_of_sin_q1 = speed_a1*cos_q1;
+  const double rate_of_y_at_q2 = k->a1*rate_of_sin_q1;
+  const double q2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double sin_q2 = sin(q2);
+  const double cos_q2 = cos(q2);
+  const double rate_of_sin_q2 = speed_a2*cos_q2;
+  const double rate_of_r23_at_q2 = -rate_of_sin_q1*sin_q2 - rate_of_sin_q2*sin_q1;
+  const double rate_of_y_at_q3 = rate_of_y_at_q2 + k->a2*rate_of_r23_at_q2;
+  const double q3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double sin_q23 = sin(q2_plus_q3);
+  const double speed_a2_plus_speed_a3 = speed_a2 + speed_a3;
+  const double rate_of_cos_q23 = -speed_a2_plus_speed_a3*sin_q23;
+  const double rate_of_r21_at_q23 = rate_of_sin_q1*cos_q23 + rate_of_cos_q23*sin_q1;
+  const double rate_of_sin_q23 = speed_a2_plus_speed_a3*cos_q23;
+  const double rate_of_r23_at_q23 = -rate_of_sin_q1*sin_q23 - rate_of_sin_q23*sin_q1;
+  const double rate_of_y = rate_of_y_at_q3 + k->a3*rate_of_r23_at_q23 + k->d4*rate_of_r21_at_q23
+      - k->d3*rate_of_cos_q1;
+  const double rate_of_cos_q2 = -speed_a2*sin_q2;
+  const double rate_of_z_at_q3 = k->a2*rate_of_cos_q2;
+  const double rate_of_z = rate_of_z_at_q3 + k->a3*rate_of_cos_q23 + k->d4*rate_of_sin_q23;
+  const double rate_of_x_at_q2 = k->a1*rate_of_cos_q1;
+  const double rate_of_r13_at_q2 = -rate_of_sin_q2*cos_q1 - rate_of_cos_q1*sin_q2;
+  const double rate_of_x_at_q3 = rate_of_x_at_q2 + k->a2*rate_of_r13_at_q2;
+  const double rate_of_r11_at_q23 = rate_of_cos_q23*cos_q1 + rate_of_cos_q1*cos_q23;
+  const double rate_of_r13_at_q23 = -rate_of_sin_q23*cos_q1 - rate_of_cos_q1*sin_q23;
+  const double rate_of_x = rate_of_x_at_q3 + k->a3*rate_of_r13_at_q23 + k->d3*rate_of_sin_q1
+      + k->d4*rate_of_r11_at_q23;
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z = z_at_q3 + k->a3*cos_q23 + k->d4*sin_q23;
+  const double shared_sum = (k->d1 - z)*speed_a2 + (z_at_q3 - z)*speed_a3;
+  const double speed_a2_plus_speed_a3_times_cos_q1 = speed_a2_plus_speed_a3*cos_q1;
+  const double speed_a2_plus_speed_a3_times_sin_q1 = speed_a2_plus_speed_a3*sin_q1;
+  const double speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3*speed_a3;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double r23_at_q2 = -sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = -sin_q1*sin_q23;
+  const double y = y_at_q3 + k->a3*r23_at_q23 + k->d4*r21_at_q23 - k->d3*cos_q1;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double r13_at_q2 = -cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double r13_at_q23 = -cos_q1*sin_q23;
+  const double x = x_at_q3 + k->a3*r13_at_q23 + k->d3*sin_q1 + k->d4*r11_at_q23;
+  const double shared_sum_2 = (rate_of_x_at_q2*speed_a2 + rate_of_x_at_q3*speed_a3)*cos_q1
+      + rate_of_cos_q1*((x_at_q2 - x)*speed_a2 + (x_at_q3 - x)*speed_a3)
+      + (rate_of_y_at_q2*speed_a2 + rate_of_y_at_q3*speed_a3)*sin_q1
+      - rate_of_sin_q1*(speed_a2*(y - y_at_q2) + speed_a3*(y - y_at_q3))
+      - rate_of_x*speed_a2_plus_speed_a3_times_cos_q1;
+  accelerations[0] = speed_a3_times_rate_of_z_at_q3*cos_q1 + rate_of_cos_q1*shared_sum - rate_of_y*speed_a1
+      - rate_of_z*speed_a2_plus_speed_a3_times_cos_q1;
+  accelerations[1] = rate_of_sin_q1*shared_sum + rate_of_x*speed_a1 + speed_a3_times_rate_of_z_at_q3*sin_q1
+      - rate_of_z*speed_a2_plus_speed_a3_times_sin_q1;
+  accelerations[2] = rate_of_y*speed_a2_plus_speed_a3_times_sin_q1 - shared_sum_2;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -946,6 +1019,7 @@ const softkin_mechanism pos_rrr_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -988,6 +1062,17 @@ softkin_status pos_rrr_branches(const pos_rrr_machine *machine, const softkin_fr
 softkin_status pos_rrr_jacobian(const pos_rrr_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&pos_rrr_mechanism, machine, axes, rows, why);
+}
+
+softkin_status pos_rrr_axis_velocities(const pos_rrr_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&pos_rrr_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status pos_rrr_axis_accelerations(const pos_rrr_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&pos_rrr_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status pos_rrr_singularity(const pos_rrr_machine *machine, const double *axes, double *margins,

@@ -355,6 +355,41 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const scara3_z_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_z = axes[3],
+      speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2], speed_z = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_z, axis_a1, axis_a2,
+      axis_a3, axis_z}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double rate_of_sin_a1 = cos(a1)*speed_a1;
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double a1_plus_a2 = a1 + a2;
+  const double speed_a1_plus_speed_a2 = speed_a1 + speed_a2;
+  const double rate_of_sin_a12 = cos(a1_plus_a2)*speed_a1_plus_speed_a2;
+  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double a1_plus_a2_plus_a3 = a1_plus_a2 + a3;
+  const double speed_a1_plus_speed_a2_plus_speed_a3 = speed_a1_plus_speed_a2 + speed_a3;
+  const double rate_of_sin_a123 = cos(a1_plus_a2_plus_a3)*speed_a1_plus_speed_a2_plus_speed_a3;
+  const double rate_of_cos_a1 = -sin(a1)*speed_a1;
+  const double rate_of_cos_a12 = -sin(a1_plus_a2)*speed_a1_plus_speed_a2;
+  const double rate_of_cos_a123 = -sin(a1_plus_a2_plus_a3)*speed_a1_plus_speed_a2_plus_speed_a3;
+  const double shared_product = k->arm_length_2*speed_a1_plus_speed_a2;
+  const double arm_length_1_times_speed_a1 = k->arm_length_1*speed_a1;
+  const double shared_product_2 = k->arm_length_3*speed_a1_plus_speed_a2_plus_speed_a3;
+  accelerations[0] = -arm_length_1_times_speed_a1*rate_of_sin_a1 - rate_of_sin_a12*shared_product
+      - rate_of_sin_a123*shared_product_2;
+  accelerations[1] = arm_length_1_times_speed_a1*rate_of_cos_a1 + rate_of_cos_a12*shared_product
+      + rate_of_cos_a123*shared_product_2;
+  accelerations[2] = 0.0;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -531,6 +566,7 @@ const softkin_mechanism scara3_z_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -573,6 +609,17 @@ softkin_status scara3_z_branches(const scara3_z_machine *machine, const softkin_
 softkin_status scara3_z_jacobian(const scara3_z_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&scara3_z_mechanism, machine, axes, rows, why);
+}
+
+softkin_status scara3_z_axis_velocities(const scara3_z_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&scara3_z_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status scara3_z_axis_accelerations(const scara3_z_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&scara3_z_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status scara3_z_singularity(const scara3_z_machine *machine, const double *axes, double *margins,

@@ -148,6 +148,15 @@ softkin_status scara3_zccc_branches(const scara3_zccc_machine *machine, const so
 softkin_status scara3_zccc_jacobian(const scara3_zccc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 4 numbers, rows as in the Jacobian. */
+softkin_status scara3_zccc_axis_velocities(const scara3_zccc_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 4 numbers, at the velocities that the axes have.
+ * */
+softkin_status scara3_zccc_axis_accelerations(const scara3_zccc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status scara3_zccc_singularity(const scara3_zccc_machine *machine, const double *axes,
     double *margins, bool *is_singular, softkin_refusal *why);

@@ -357,6 +357,41 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const scara4_zccc_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], axis_a4 = axes[3],
+      speed_a1 = speeds[0], speed_a2 = speeds[1], speed_a3 = speeds[2], speed_a4 = speeds[3];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2,
+      axis_a3, axis_a4}, 8)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double rate_of_sin_a2 = cos(a2)*speed_a2;
+  const double a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double a2_plus_a3 = a2 + a3;
+  const double speed_a2_plus_speed_a3 = speed_a2 + speed_a3;
+  const double rate_of_sin_a23 = cos(a2_plus_a3)*speed_a2_plus_speed_a3;
+  const double a4 = SOFTKIN_DEGREE*(axis_a4 - k->offset_a4);
+  const double a2_plus_a3_plus_a4 = a2_plus_a3 + a4;
+  const double speed_a2_plus_speed_a3_plus_speed_a4 = speed_a2_plus_speed_a3 + speed_a4;
+  const double rate_of_sin_a234 = cos(a2_plus_a3_plus_a4)*speed_a2_plus_speed_a3_plus_speed_a4;
+  const double rate_of_cos_a2 = -sin(a2)*speed_a2;
+  const double rate_of_cos_a23 = -sin(a2_plus_a3)*speed_a2_plus_speed_a3;
+  const double rate_of_cos_a234 = -sin(a2_plus_a3_plus_a4)*speed_a2_plus_speed_a3_plus_speed_a4;
+  const double shared_product = k->link_length_2*speed_a2_plus_speed_a3;
+  const double link_length_1_times_speed_a2 = k->link_length_1*speed_a2;
+  const double shared_product_2 = k->link_length_3*speed_a2_plus_speed_a3_plus_speed_a4;
+  accelerations[0] = -link_length_1_times_speed_a2*rate_of_sin_a2 - rate_of_sin_a23*shared_product
+      - rate_of_sin_a234*shared_product_2;
+  accelerations[1] = link_length_1_times_speed_a2*rate_of_cos_a2 + rate_of_cos_a23*shared_product
+      + rate_of_cos_a234*shared_product_2;
+  accelerations[2] = 0.0;
+  accelerations[3] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -533,6 +568,7 @@ const softkin_mechanism scara4_zccc_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -575,6 +611,17 @@ softkin_status scara4_zccc_branches(const scara4_zccc_machine *machine, const so
 softkin_status scara4_zccc_jacobian(const scara4_zccc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&scara4_zccc_mechanism, machine, axes, rows, why);
+}
+
+softkin_status scara4_zccc_axis_velocities(const scara4_zccc_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&scara4_zccc_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status scara4_zccc_axis_accelerations(const scara4_zccc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&scara4_zccc_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status scara4_zccc_singularity(const scara4_zccc_machine *machine, const double *axes,

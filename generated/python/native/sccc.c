@@ -433,15 +433,52 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   const double cos_a1 = cos(a1);
   const double cos_a12 = cos(a1_plus_a2);
   const double cos_a123 = cos(a1_plus_a2_plus_a3);
-  rows[0] = -k->link_length_1*sin_a1 - k->shared_sum*sin_a123 - k->shared_sum_2*sin_a12;
+  rows[0] = -k->link_length_1*sin_a1 - k->shared_sum*sin_a12 - k->shared_sum_4*sin_a123;
   rows[1] = -k->link_length_2*sin_a12 - k->shared_sum_3*sin_a123;
   rows[2] = -k->link_length_3*sin_a123;
-  rows[3] = k->link_length_1*cos_a1 + k->shared_sum_2*cos_a12 + k->shared_sum*cos_a123;
+  rows[3] = k->link_length_1*cos_a1 + k->shared_sum*cos_a12 + k->shared_sum_4*cos_a123;
   rows[4] = k->link_length_2*cos_a12 + k->shared_sum_3*cos_a123;
   rows[5] = k->link_length_3*cos_a123;
   rows[6] = k->coupling_12_plus_coupling_13_plus_one;
   rows[7] = k->coupling_23_plus_one;
   rows[8] = 1.0;
+  return SOFTKIN_OK;
+}
+
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const sccc_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], speed_a1 = speeds[0],
+      speed_a2 = speeds[1], speed_a3 = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = SOFTKIN_DEGREE*(axis_a1 - k->offset_a1);
+  const double rate_of_sin_a1 = cos(a1)*speed_a1;
+  const double motor_a2 = SOFTKIN_DEGREE*(axis_a2 - k->offset_a2);
+  const double a2 = motor_a2 + a1*k->coupling_12;
+  const double a1_plus_a2 = a1 + a2;
+  const double rate_of_a2 = speed_a2 + k->coupling_12*speed_a1;
+  const double rate_of_a2_plus_speed_a1 = rate_of_a2 + speed_a1;
+  const double rate_of_sin_a12 = cos(a1_plus_a2)*rate_of_a2_plus_speed_a1;
+  const double motor_a3 = SOFTKIN_DEGREE*(axis_a3 - k->offset_a3);
+  const double a3 = motor_a3 + a1*k->coupling_13 + k->coupling_23*motor_a2;
+  const double a1_plus_a2_plus_a3 = a1_plus_a2 + a3;
+  const double rate_of_a3 = speed_a3 + k->coupling_13*speed_a1 + k->coupling_23*speed_a2;
+  const double rate_of_a2_plus_speed_a1_plus_rate_of_a3 = rate_of_a2_plus_speed_a1 + rate_of_a3;
+  const double rate_of_sin_a123 = cos(a1_plus_a2_plus_a3)*rate_of_a2_plus_speed_a1_plus_rate_of_a3;
+  const double rate_of_cos_a1 = -sin(a1)*speed_a1;
+  const double rate_of_cos_a12 = -rate_of_a2_plus_speed_a1*sin(a1_plus_a2);
+  const double rate_of_cos_a123 = -rate_of_a2_plus_speed_a1_plus_rate_of_a3*sin(a1_plus_a2_plus_a3);
+  const double shared_sum_5 = k->link_length_2*speed_a2 + k->shared_sum*speed_a1;
+  const double shared_sum_6 = k->link_length_3*speed_a3 + k->shared_sum_2*speed_a1 + k->shared_sum_3*speed_a2;
+  const double link_length_1_times_speed_a1 = k->link_length_1*speed_a1;
+  accelerations[0] = -link_length_1_times_speed_a1*rate_of_sin_a1 - rate_of_sin_a12*shared_sum_5
+      - rate_of_sin_a123*shared_sum_6;
+  accelerations[1] = link_length_1_times_speed_a1*rate_of_cos_a1 + rate_of_cos_a12*shared_sum_5
+      + rate_of_cos_a123*shared_sum_6;
+  accelerations[2] = 0.0;
   return SOFTKIN_OK;
 }
 
@@ -502,13 +539,15 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double coupling_12_plus_coupling_13_plus_one = 1.0 + p->coupling_12 + p->coupling_13;
   const double coupling_23_plus_one = 1.0 + p->coupling_23;
+  const double shared_sum = p->link_length_2 + p->coupling_12*p->link_length_2;
+  const double shared_sum_2 = p->link_length_3 + p->coupling_12*p->link_length_3
+      + p->coupling_13*p->link_length_3;
+  const double shared_sum_3 = p->link_length_3 + p->coupling_23*p->link_length_3;
   const double link_length_1_plus_link_length_2 = p->link_length_1 + p->link_length_2;
   const double quotient_in_cos_a2 = 0.25/(p->link_length_1*p->link_length_2);
   const double half_by_link_length_1_by_link_length_2 = 0.5/(p->link_length_1*p->link_length_2);
   const double quotient_in_open_a2 = p->coupling_12*SOFTKIN_RADIAN;
-  const double shared_sum = p->link_length_3 + (p->coupling_12 + p->coupling_13)*p->link_length_3;
-  const double shared_sum_2 = p->link_length_2 + p->coupling_12*p->link_length_2;
-  const double shared_sum_3 = p->link_length_3 + p->coupling_23*p->link_length_3;
+  const double shared_sum_4 = p->link_length_3 + (p->coupling_12 + p->coupling_13)*p->link_length_3;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -540,13 +579,14 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one;
   made.coupling_23_plus_one = coupling_23_plus_one;
+  made.shared_sum = shared_sum;
+  made.shared_sum_2 = shared_sum_2;
+  made.shared_sum_3 = shared_sum_3;
   made.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2;
   made.quotient_in_cos_a2 = quotient_in_cos_a2;
   made.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2;
   made.quotient_in_open_a2 = quotient_in_open_a2;
-  made.shared_sum = shared_sum;
-  made.shared_sum_2 = shared_sum_2;
-  made.shared_sum_3 = shared_sum_3;
+  made.shared_sum_4 = shared_sum_4;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(sccc_machine *)machine = made;
   return SOFTKIN_OK;
@@ -584,6 +624,7 @@ const softkin_mechanism sccc_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .quantities = find_quantities,
 };
 
@@ -625,6 +666,17 @@ softkin_status sccc_branches(const sccc_machine *machine, const softkin_frame *f
 softkin_status sccc_jacobian(const sccc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&sccc_mechanism, machine, axes, rows, why);
+}
+
+softkin_status sccc_axis_velocities(const sccc_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&sccc_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status sccc_axis_accelerations(const sccc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&sccc_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status sccc_singularity(const sccc_machine *machine, const double *axes, double *margins,

@@ -96,9 +96,9 @@ typedef struct {
       lowest_joint_2, highest_joint_2, lowest_joint_3, highest_joint_3, link_length_1, link_length_2,
       link_length_3, coupling_12, coupling_13, coupling_23, offset_a1, offset_a2, offset_a3, bound_of_cos_a2,
       machine_scale_times_plane, link_length_1_minus_link_length_2, machine_scale_times_free_angle,
-      coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, link_length_1_plus_link_length_2,
-      quotient_in_cos_a2, half_by_link_length_1_by_link_length_2, quotient_in_open_a2, shared_sum,
-      shared_sum_2, shared_sum_3;
+      coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, shared_sum, shared_sum_2, shared_sum_3,
+      link_length_1_plus_link_length_2, quotient_in_cos_a2, half_by_link_length_1_by_link_length_2,
+      quotient_in_open_a2, shared_sum_4;
   bool single_a1, single_a2, single_a3;
 } sccc_machine;
 
@@ -159,6 +159,15 @@ softkin_status sccc_branches(const sccc_machine *machine, const softkin_frame *f
 /** The Jacobian, per radian: 3 rows of 3. */
 softkin_status sccc_jacobian(const sccc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status sccc_axis_velocities(const sccc_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status sccc_axis_accelerations(const sccc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status sccc_singularity(const sccc_machine *machine, const double *axes, double *margins,

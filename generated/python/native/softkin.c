@@ -450,6 +450,75 @@ softkin_status softkin_singularity(const softkin_mechanism *kind, const void *ma
   return status;
 }
 
+/* The values of the axes whose product with the Jacobian is given. */
+static softkin_status solved_for_axes(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const double *given, double *found, softkin_refusal *why) {
+  double rows[SOFTKIN_MOST_ROWS*SOFTKIN_MOST_AXES], margins[SOFTKIN_MOST_MARGINS];
+  double system[SOFTKIN_MOST_ROWS*(SOFTKIN_MOST_ROWS + 1)];
+  const int count = kind->row_count, width = count + 1;
+  bool is_singular = false;
+  softkin_status status = softkin_jacobian(kind, machine, axes, rows, why);
+  if (status == SOFTKIN_OK) {
+    status = softkin_singularity(kind, machine, axes, margins, &is_singular, why);
+  }
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  for (int i = 0; i < count; i += 1) {
+    for (int j = 0, column = 0; j < kind->axis_count && column < count; j += 1) {
+      if (!kind->axes[j].is_held) {
+        system[i*width + column] = rows[i*kind->axis_count + j];
+        column += 1;
+      }
+    }
+    system[i*width + count] = given[i];
+  }
+  if (is_singular || (count > 0 && softkin_solve(system, count, 1) == 0.0)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the pose is singular", "", 0.0, 0);
+  }
+  for (int j = 0, row = 0; j < kind->axis_count; j += 1) {
+    found[j] = 0.0;
+    if (!kind->axes[j].is_held && row < count) {
+      found[j] = system[row*width + count];
+      row += 1;
+    }
+  }
+  return SOFTKIN_OK;
+}
+
+softkin_status softkin_axis_velocities(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  const softkin_status status = refused(machine, axes != NULL && twist != NULL && velocities != NULL, why);
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  if (!softkin_are_reasonable(twist, kind->row_count)) {
+    return bad(why, "");
+  }
+  return solved_for_axes(kind, machine, axes, twist, velocities, why);
+}
+
+softkin_status softkin_axis_accelerations(const softkin_mechanism *kind, const void *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why) {
+  double given[SOFTKIN_MOST_ROWS];
+  softkin_status status = refused(machine,
+      axes != NULL && velocities != NULL && twist_rate != NULL && accelerations != NULL, why);
+  if (status == SOFTKIN_OK && !softkin_are_reasonable(twist_rate, kind->row_count)) {
+    status = bad(why, "");
+  }
+  if (status == SOFTKIN_OK) {
+    status = kind->bias(machine, axes, velocities, given, why);
+  }
+  if (status != SOFTKIN_OK) {
+    return status;
+  }
+  for (int i = 0; i < kind->row_count; i += 1) {
+    given[i] = twist_rate[i] - given[i];
+  }
+  return solved_for_axes(kind, machine, axes, given, accelerations, why);
+}
+
 softkin_status softkin_limits(const softkin_mechanism *kind, const void *machine, const double *axes,
     softkin_refusal *why) {
   const softkin_status status = refused(machine, axes != NULL, why);
@@ -534,7 +603,7 @@ static bool sort_in(void *context, const double *joints) {
   return true;
 }
 
-/* All roots of a scan for each choice of signs that a scan knows. */
+/* All roots of a search for each choice of signs that it knows. */
 static softkin_status all_roots(sorting *in, softkin_refusal *why) {
   in->others->count = 0;
   for (int scan = 0; scan < 1 << in->kind->side_count; scan += 1) {

@@ -16,7 +16,7 @@
  * radian. It does not compile with -ffast-math, /fp:fast or another option that removes tests for NaN. With
  * -ffp-contract=off all processors agree to the last digits.
  *
- * A call needs little stack (about 5 kB), except for machines whose inverse is a root scan: these need
+ * A call needs little stack (about 5 kB), except for machines whose inverse is a root search: these need
  * about 36 kB.
  */
 
@@ -67,12 +67,12 @@ typedef struct {
 typedef struct {
   uint32_t ready; /**< set by `_init` */
   bool check_limits;
-  bool is_searched; /**< whether the inverse is a root scan: then a branch may have several solutions */
+  bool is_searched; /**< whether the inverse is a root search: then a branch may have several solutions */
   double warning_distance;
   double tie; /**< squared distances (degrees, or u without rotary axes) that differ by less are equal */
 } softkin_base;
 
-/** Further solutions of a machine with a root scan; the caller owns the arrays. */
+/** Further solutions of a machine with a root search; the caller owns the arrays. */
 typedef struct {
   int capacity; /**< in: the size of the arrays in solutions, at least SOFTKIN_MOST_SOLUTIONS */
   double *axes; /**< capacity times the number of axes */
@@ -156,6 +156,8 @@ typedef struct {
   softkin_status (*singularity)(const void *machine, const double *axes, double *margins,
       softkin_refusal *why);
   softkin_status (*jacobian)(const void *machine, const double *axes, double *rows, softkin_refusal *why);
+  softkin_status (*bias)(const void *machine, const double *axes, const double *speeds, double *accelerations,
+      softkin_refusal *why);
   softkin_status (*quantities)(const void *machine, const double *axes, double *values, softkin_refusal *why);
   softkin_status (*search_given)(const void *machine, const softkin_frame *frame, const int8_t *signs,
       const int8_t *turns, const double *reference, double *given, softkin_refusal *why);
@@ -260,6 +262,27 @@ softkin_status softkin_branches(const softkin_mechanism *kind, const void *machi
 /** The Jacobian by rows, per radian: `row_count` times `axis_count`, rows as in `rows`. */
 softkin_status softkin_jacobian(const softkin_mechanism *kind, const void *machine, const double *axes,
     double *rows, softkin_refusal *why);
+
+/**
+ * The velocities of the axes for a twist of the frame, both per radian: the inverse of the Jacobian. An axis
+ * that is held does not move.
+ *
+ * @param twist `row_count` numbers, rows as in `rows`; velocities: `axis_count`
+ * @return SOFTKIN_OK, SOFTKIN_IMPOSSIBLE at a singular pose, or as `softkin_jacobian`
+ */
+softkin_status softkin_axis_velocities(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/**
+ * The accelerations of the axes that give the frame an acceleration, per radian.
+ *
+ * @param velocities those of the axes, as `softkin_axis_velocities` finds them
+ * @param twist_rate the rate of the twist; zeros on a straight line at constant speed
+ * @return as `softkin_axis_velocities`
+ */
+softkin_status softkin_axis_accelerations(const softkin_mechanism *kind, const void *machine,
+    const double *axes, const double *velocities, const double *twist_rate, double *accelerations,
+    softkin_refusal *why);
 
 /**
  * The margins, each zero at its singularity.

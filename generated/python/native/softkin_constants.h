@@ -10,6 +10,8 @@
 #define SOFTKIN_MOST_BRANCHES 12
 /** The largest number of values that a search for roots is given. */
 #define SOFTKIN_MOST_GIVEN 96
+#define SOFTKIN_MOST_ROWS 6
+#define SOFTKIN_MOST_MARGINS 64
 /** The largest number of slots of a machine whose branches are computed together. */
 #define SOFTKIN_MOST_TOGETHER 16
 

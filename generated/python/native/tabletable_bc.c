@@ -349,6 +349,65 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const tabletable_bc_machine *k = machine;
+  const double axis_x = axes[0], axis_y = axes[1], axis_z = axes[2], axis_b = axes[3], axis_c = axes[4],
+      speed_x = speeds[0], speed_y = speeds[1], speed_z = speeds[2], speed_b = speeds[3], speed_c = speeds[4];
+  if (!softkin_are_reasonable((const double[]){speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c,
+      axis_x, axis_y, axis_z}, 10)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double c = SOFTKIN_DEGREE*(axis_c - k->offset_c);
+  const double cos_c = cos(c);
+  const double sin_c = sin(c);
+  const double rate_of_cos_c = -speed_c*sin_c;
+  const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
+  const double sin_b = sin(b);
+  const double rate_of_cos_b = -speed_b*sin_b;
+  const double cos_b = cos(b);
+  const double rate_of_r11_at_b = rate_of_cos_c*cos_b + rate_of_cos_b*cos_c;
+  const double rate_of_sin_c = speed_c*cos_c;
+  const double rate_of_sin_b = speed_b*cos_b;
+  const double rate_of_r13_at_b = -rate_of_sin_b*cos_c - rate_of_cos_c*sin_b;
+  const double joint_x = axis_x - k->offset_x;
+  const double joint_z = axis_z - k->offset_z;
+  const double joint_z_minus_tool_length = joint_z - k->tool_length;
+  const double rate_of_z = speed_z*cos_b + joint_x*rate_of_sin_b + joint_z_minus_tool_length*rate_of_cos_b
+      + speed_x*sin_b;
+  const double r21_at_b = -cos_b*sin_c;
+  const double rate_of_y_at_b = k->pivot_x*rate_of_sin_c;
+  const double rate_of_r21_at_b = -rate_of_sin_c*cos_b - rate_of_cos_b*sin_c;
+  const double rate_of_r23_at_b = rate_of_sin_b*sin_c + rate_of_sin_c*sin_b;
+  const double joint_y = axis_y - k->offset_y;
+  const double r23_at_b = sin_b*sin_c;
+  const double rate_of_y = rate_of_y_at_b + speed_y*cos_c + joint_x*rate_of_r21_at_b + joint_y*rate_of_cos_c
+      + joint_z_minus_tool_length*rate_of_r23_at_b + r21_at_b*speed_x + r23_at_b*speed_z;
+  const double r11_at_b = cos_b*cos_c;
+  const double rate_of_x_at_b = -k->pivot_x*rate_of_cos_c;
+  const double r13_at_b = -cos_c*sin_b;
+  const double rate_of_x = rate_of_x_at_b + joint_x*rate_of_r11_at_b + joint_y*rate_of_sin_c
+      + joint_z_minus_tool_length*rate_of_r13_at_b + r11_at_b*speed_x + r13_at_b*speed_z + speed_y*sin_c;
+  const double y_at_b = k->pivot_x*sin_c;
+  const double y = y_at_b + joint_y*cos_c + joint_x*r21_at_b + joint_z_minus_tool_length*r23_at_b;
+  const double x_at_b = -k->pivot_x*cos_c;
+  const double x = x_at_b + joint_x*r11_at_b + joint_y*sin_c + joint_z_minus_tool_length*r13_at_b;
+  const double z = joint_z_minus_tool_length*cos_b + joint_x*sin_b - k->pivot_z;
+  const double pivot_z_plus_z = k->pivot_z + z;
+  accelerations[0] = rate_of_r11_at_b*speed_x + rate_of_r13_at_b*speed_z + rate_of_sin_c*speed_y
+      + rate_of_y*speed_c + (-rate_of_z*cos_c - pivot_z_plus_z*rate_of_cos_c)*speed_b;
+  accelerations[1] = rate_of_cos_c*speed_y + rate_of_r21_at_b*speed_x + rate_of_r23_at_b*speed_z
+      + (pivot_z_plus_z*rate_of_sin_c + rate_of_z*sin_c)*speed_b - rate_of_x*speed_c;
+  accelerations[2] = rate_of_cos_b*speed_z + rate_of_sin_b*speed_x
+      + speed_b*((rate_of_x - rate_of_x_at_b)*cos_c + rate_of_cos_c*(x - x_at_b) + (y_at_b - y)*rate_of_sin_c
+      + (rate_of_y_at_b - rate_of_y)*sin_c);
+  accelerations[3] = (-rate_of_r21_at_b*cos_c - r11_at_b*rate_of_sin_c - r21_at_b*rate_of_cos_c
+      - rate_of_r11_at_b*sin_c)*speed_b - rate_of_sin_b*speed_c;
+  accelerations[4] = -2.0*speed_b*(rate_of_cos_c*cos_c + rate_of_sin_c*sin_c);
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -514,6 +573,7 @@ const softkin_mechanism tabletable_bc_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -556,6 +616,17 @@ softkin_status tabletable_bc_branches(const tabletable_bc_machine *machine, cons
 softkin_status tabletable_bc_jacobian(const tabletable_bc_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&tabletable_bc_mechanism, machine, axes, rows, why);
+}
+
+softkin_status tabletable_bc_axis_velocities(const tabletable_bc_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&tabletable_bc_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status tabletable_bc_axis_accelerations(const tabletable_bc_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&tabletable_bc_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status tabletable_bc_singularity(const tabletable_bc_machine *machine, const double *axes,

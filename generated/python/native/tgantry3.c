@@ -208,6 +208,21 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  const double axis_a = axes[0], axis_b = axes[1], axis_z = axes[2], speed_a = speeds[0],
+      speed_b = speeds[1], speed_z = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a, speed_b, speed_z, axis_a, axis_b, axis_z}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  accelerations[0] = 0.0;
+  accelerations[1] = 0.0;
+  accelerations[2] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The quantities beside the axes that have limits. */
 static softkin_status find_quantities(const void *machine, const double *axes, double *values,
     softkin_refusal *why) {
@@ -299,6 +314,7 @@ const softkin_mechanism tgantry3_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .quantities = find_quantities,
 };
 
@@ -341,6 +357,17 @@ softkin_status tgantry3_branches(const tgantry3_machine *machine, const softkin_
 softkin_status tgantry3_jacobian(const tgantry3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&tgantry3_mechanism, machine, axes, rows, why);
+}
+
+softkin_status tgantry3_axis_velocities(const tgantry3_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&tgantry3_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status tgantry3_axis_accelerations(const tgantry3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&tgantry3_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status tgantry3_singularity(const tgantry3_machine *machine, const double *axes, double *margins,

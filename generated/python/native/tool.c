@@ -87,6 +87,17 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  (void)machine;
+  (void)axes;
+  (void)speeds;
+  (void)accelerations;
+  (void)why;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   (void)why;
@@ -125,6 +136,7 @@ const softkin_mechanism tool_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void tool_defaults(tool_parameters *parameters) {
@@ -165,6 +177,17 @@ softkin_status tool_branches(const tool_machine *machine, const softkin_frame *f
 softkin_status tool_jacobian(const tool_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&tool_mechanism, machine, axes, rows, why);
+}
+
+softkin_status tool_axis_velocities(const tool_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&tool_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status tool_axis_accelerations(const tool_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&tool_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status tool_singularity(const tool_machine *machine, const double *axes, double *margins,

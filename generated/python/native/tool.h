@@ -108,6 +108,15 @@ softkin_status tool_branches(const tool_machine *machine, const softkin_frame *f
 softkin_status tool_jacobian(const tool_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
 
+/** The velocities of the axes for a twist of the frame, per radian: 0 numbers, rows as in the Jacobian. */
+softkin_status tool_axis_velocities(const tool_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 0 numbers, at the velocities that the axes have.
+ * */
+softkin_status tool_axis_accelerations(const tool_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
+
 /** 0 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status tool_singularity(const tool_machine *machine, const double *axes, double *margins,
     bool *is_singular, softkin_refusal *why);

@@ -239,6 +239,31 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const transmit_machine *k = machine;
+  const double axis_x = axes[0], axis_z = axes[1], axis_c = axes[2], speed_x = speeds[0],
+      speed_z = speeds[1], speed_c = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_c, speed_x, speed_z, axis_c, axis_x, axis_z}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double joint_x = axis_x - k->offset_x;
+  /* X where the machine has no pose */
+  if (!(joint_x >= -1e-9 && joint_x <= 1000000001.0)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "X where the machine has no pose", "", 0.0, 0);
+  }
+  const double c = SOFTKIN_DEGREE*(axis_c - k->offset_c);
+  const double sin_c = sin(c);
+  const double rate_of_cos_c = -speed_c*sin_c;
+  const double cos_c = cos(c);
+  const double rate_of_sin_c = speed_c*cos_c;
+  accelerations[0] = rate_of_cos_c*speed_x + (-joint_x*rate_of_sin_c - speed_x*sin_c)*speed_c;
+  accelerations[1] = (-speed_x*cos_c - joint_x*rate_of_cos_c)*speed_c - rate_of_sin_c*speed_x;
+  accelerations[2] = 0.0;
+  return SOFTKIN_OK;
+}
+
 /* The values that depend on the parameters alone, or why the parameters are refused. */
 static softkin_status fill_machine(void *machine, const void *parameters, softkin_refusal *why) {
   const transmit_parameters *p = parameters;
@@ -313,6 +338,7 @@ const softkin_mechanism transmit_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
 };
 
 void transmit_defaults(transmit_parameters *parameters) {
@@ -354,6 +380,17 @@ softkin_status transmit_branches(const transmit_machine *machine, const softkin_
 softkin_status transmit_jacobian(const transmit_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&transmit_mechanism, machine, axes, rows, why);
+}
+
+softkin_status transmit_axis_velocities(const transmit_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&transmit_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status transmit_axis_accelerations(const transmit_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&transmit_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status transmit_singularity(const transmit_machine *machine, const double *axes, double *margins,

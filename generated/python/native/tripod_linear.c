@@ -559,6 +559,201 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const tripod_linear_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], speed_a1 = speeds[0],
+      speed_a2 = speeds[1], speed_a3 = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a2 = axis_a2 - k->offset_a2;
+  const double pivot_2_y = k->sum_in_pivot_2_y - a2*k->product_in_pivot_2_y;
+  const double a3 = axis_a3 - k->offset_a3;
+  const double pivot_3_y = a3*k->product_in_pivot_2_y - k->sum_in_pivot_2_y;
+  const double a1 = axis_a1 - k->offset_a1;
+  const double pivot_1_z = -a1*k->cos_rail_angle;
+  const double pivot_2_z = -a2*k->cos_rail_angle;
+  const double centre_1_to_2_z = pivot_2_z - pivot_1_z;
+  const double pivot_3_z = -a3*k->cos_rail_angle;
+  const double centre_1_to_3_z = pivot_3_z - pivot_1_z;
+  /* normal to the plane of the centres */
+  const double normal_x = centre_1_to_3_z*pivot_2_y - centre_1_to_2_z*pivot_3_y;
+  /* rod 1: centre about which it swings */
+  const double pivot_1_x = k->inner_radius_minus_outer_radius - a1*k->sin_rail_angle;
+  /* rod 2: centre about which it swings */
+  const double pivot_2_x = k->sum_in_pivot_2_x + a2*k->half_sin_rail_angle;
+  const double centre_1_to_2_x = pivot_2_x - pivot_1_x; /* vector from centre 1 to centre 2 */
+  /* rod 3: centre about which it swings */
+  const double pivot_3_x = k->sum_in_pivot_2_x + a3*k->half_sin_rail_angle;
+  const double centre_1_to_3_x = pivot_3_x - pivot_1_x; /* vector from centre 1 to centre 3 */
+  const double normal_y = centre_1_to_2_z*centre_1_to_3_x - centre_1_to_2_x*centre_1_to_3_z;
+  const double normal_z = centre_1_to_2_x*pivot_3_y - centre_1_to_3_x*pivot_2_y;
+  /* squared length of the normal */
+  const double normal_square = normal_x*normal_x + normal_y*normal_y + normal_z*normal_z;
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  /* trilateration: the foot projected on the vector to centre 2, times its length */
+  const double projection_2 = 0.5
+      *(centre_1_to_2_x*centre_1_to_2_x + centre_1_to_2_z*centre_1_to_2_z + pivot_2_y*pivot_2_y);
+  /* trilateration: the foot projected on the vector to centre 3, times its length */
+  const double projection_3 = 0.5
+      *(centre_1_to_3_x*centre_1_to_3_x + centre_1_to_3_z*centre_1_to_3_z + pivot_3_y*pivot_3_y);
+  const double one_by_normal_square = 1.0/normal_square;
+  /* foot of the perpendicular, seen from centre 1 */
+  const double foot_x = one_by_normal_square
+      *((normal_z*pivot_3_y - centre_1_to_3_z*normal_y)*projection_2
+      + (centre_1_to_2_z*normal_y - normal_z*pivot_2_y)*projection_3);
+  const double foot_y = one_by_normal_square
+      *((centre_1_to_3_z*normal_x - centre_1_to_3_x*normal_z)*projection_2
+      + (centre_1_to_2_x*normal_z - centre_1_to_2_z*normal_x)*projection_3);
+  const double foot_z = one_by_normal_square
+      *((centre_1_to_3_x*normal_y - normal_x*pivot_3_y)*projection_2
+      + (normal_x*pivot_2_y - centre_1_to_2_x*normal_y)*projection_3);
+  /* square of the height over the plane of the centres */
+  const double height_square = k->arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z;
+  /* the rods do not meet */
+  if (!(height_square >= -k->arm_length_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
+  const double x = foot_x + pivot_1_x + height_by_normal*normal_x;
+  const double twice_x = 2.0*x;
+  const double slope_1_by_x = twice_x + a1*k->twice_sin_rail_angle - k->sum_in_slope_1_by_x;
+  const double y = foot_y + height_by_normal*normal_y;
+  const double slope_1_by_y = 2.0*y;
+  const double z = foot_z + pivot_1_z + height_by_normal*normal_z;
+  const double twice_z = 2.0*z;
+  const double slope_1_by_z = twice_z + a1*k->twice_cos_rail_angle;
+  const double a2_times_sin_rail_angle = a2*k->sin_rail_angle;
+  const double product_in_slope_2_by_y = (k->inner_radius - a2_times_sin_rail_angle - k->outer_radius)
+      *k->root_of_3;
+  const double slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y;
+  const double slope_2_by_z = twice_z + a2*k->twice_cos_rail_angle;
+  const double a3_times_sin_rail_angle = a3*k->sin_rail_angle;
+  const double product_in_slope_3_by_y = (k->inner_radius - a3_times_sin_rail_angle - k->outer_radius)
+      *k->root_of_3;
+  const double slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y;
+  const double slope_3_by_z = twice_z + a3*k->twice_cos_rail_angle;
+  const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
+  const double sum_in_slope_2_by_x = k->inner_radius_minus_outer_radius + twice_x;
+  const double slope_2_by_x = sum_in_slope_2_by_x - a2_times_sin_rail_angle;
+  const double slope_3_by_x = sum_in_slope_2_by_x - a3_times_sin_rail_angle;
+  const double sum_in_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z;
+  const double sum_in_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x*sum_in_determinant + slope_1_by_y*sum_in_determinant_2
+      + slope_1_by_z*sum_in_determinant_3;
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > k->product_in_determinant_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double sum_in_velocity_y = slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z;
+  const double sum_in_velocity_y_2 = slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x;
+  const double one_by_determinant_divisor = 1.0/determinant;
+  const double slope_3_by_a3 = (pivot_3_x - x)*k->sin_rail_angle + (z - pivot_3_z)*k->twice_cos_rail_angle
+      - (0.5*product_in_slope_3_by_y + y)*k->sin_rail_angle_times_root_of_3;
+  const double speed_a3_times_slope_3_by_a3 = slope_3_by_a3*speed_a3;
+  const double slope_2_by_a2 = (pivot_2_x - x)*k->sin_rail_angle
+      + (y - 0.5*product_in_slope_2_by_y)*k->sin_rail_angle_times_root_of_3
+      + (z - pivot_2_z)*k->twice_cos_rail_angle;
+  const double speed_a2_times_slope_2_by_a2 = slope_2_by_a2*speed_a2;
+  const double slope_1_by_a1 = (z - pivot_1_z)*k->twice_cos_rail_angle
+      + (x - pivot_1_x)*k->twice_sin_rail_angle;
+  const double speed_a1_times_slope_1_by_a1 = slope_1_by_a1*speed_a1;
+  const double velocity_y = (speed_a2_times_slope_2_by_a2*sum_in_velocity_y
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_y_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant_2)
+      *one_by_determinant_divisor;
+  const double rate_of_slope_1_by_y = 2.0*velocity_y;
+  const double sum_in_velocity_z = slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x;
+  const double sum_in_velocity_z_2 = slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y;
+  const double velocity_z = (speed_a2_times_slope_2_by_a2*sum_in_velocity_z
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_z_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant_3)
+      *one_by_determinant_divisor;
+  const double sum_in_velocity_x = slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y;
+  const double sum_in_velocity_x_2 = slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z;
+  const double velocity_x = (speed_a2_times_slope_2_by_a2*sum_in_velocity_x
+      + speed_a3_times_slope_3_by_a3*sum_in_velocity_x_2 - speed_a1_times_slope_1_by_a1*sum_in_determinant)
+      *one_by_determinant_divisor;
+  const double twice_velocity_x = 2.0*velocity_x;
+  const double rate_of_slope_1_by_x = twice_velocity_x + speed_a1*k->twice_sin_rail_angle;
+  const double rate_of_slope_3_by_y = rate_of_slope_1_by_y - speed_a3*k->sin_rail_angle_times_root_of_3;
+  const double twice_velocity_z = 2.0*velocity_z;
+  const double rate_of_slope_3_by_z = twice_velocity_z + speed_a3*k->twice_cos_rail_angle;
+  const double rate_of_slope_3_by_x = twice_velocity_x - speed_a3*k->sin_rail_angle;
+  const double rate_of_slope_1_by_z = twice_velocity_z + speed_a1*k->twice_cos_rail_angle;
+  const double rate_of_slope_2_by_y = rate_of_slope_1_by_y + speed_a2*k->sin_rail_angle_times_root_of_3;
+  const double rate_of_slope_2_by_z = twice_velocity_z + speed_a2*k->twice_cos_rail_angle;
+  const double rate_of_slope_2_by_x = twice_velocity_x - speed_a2*k->sin_rail_angle;
+  const double sum_in_rate_of_determinant = rate_of_slope_1_by_x*sum_in_determinant
+      + rate_of_slope_1_by_y*sum_in_determinant_2 + rate_of_slope_1_by_z*sum_in_determinant_3
+      - rate_of_slope_2_by_x*sum_in_velocity_x - rate_of_slope_2_by_y*sum_in_velocity_y
+      - rate_of_slope_2_by_z*sum_in_velocity_z;
+  const double rate_of_determinant = sum_in_rate_of_determinant - rate_of_slope_3_by_x*sum_in_velocity_x_2
+      - rate_of_slope_3_by_y*sum_in_velocity_y_2 - rate_of_slope_3_by_z*sum_in_velocity_z_2;
+  const double shared_product_5 = one_by_determinant_divisor
+      *(slope_2_by_y*speed_a3_times_slope_3_by_a3 - slope_3_by_y*speed_a2_times_slope_2_by_a2);
+  const double shared_product_6 = (slope_3_by_z*speed_a2_times_slope_2_by_a2
+      - slope_2_by_z*speed_a3_times_slope_3_by_a3)*one_by_determinant_divisor;
+  const double product_in_rate_of_slope_2_by_a2 = velocity_y*k->sin_rail_angle_times_root_of_3;
+  const double twice_cos_rail_angle_times_velocity_z = k->twice_cos_rail_angle*velocity_z;
+  const double sum_in_rate_of_slope_2_by_a2_2 = twice_cos_rail_angle_times_velocity_z
+      - velocity_x*k->sin_rail_angle;
+  const double rate_of_slope_3_by_a3 = sum_in_rate_of_slope_2_by_a2_2
+      + speed_a3*k->sum_in_rate_of_slope_2_by_a2 - product_in_rate_of_slope_2_by_a2;
+  const double speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3*speed_a3;
+  const double rate_of_slope_2_by_a2 = product_in_rate_of_slope_2_by_a2 + sum_in_rate_of_slope_2_by_a2_2
+      + speed_a2*k->sum_in_rate_of_slope_2_by_a2;
+  const double speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2*speed_a2;
+  const double rate_of_slope_1_by_a1 = twice_cos_rail_angle_times_velocity_z
+      + speed_a1*k->sum_in_rate_of_slope_1_by_a1 + k->twice_sin_rail_angle*velocity_x;
+  const double speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1*speed_a1;
+  const double shared_product_10 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_x
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_x_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant)*one_by_determinant_divisor;
+  const double shared_product_11 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_y
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_y_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant_2)*one_by_determinant_divisor;
+  const double shared_product_12 = (speed_a2_times_rate_of_slope_2_by_a2*sum_in_velocity_z
+      + speed_a3_times_rate_of_slope_3_by_a3*sum_in_velocity_z_2
+      - speed_a1_times_rate_of_slope_1_by_a1*sum_in_determinant_3)*one_by_determinant_divisor;
+  const double shared_product = one_by_determinant_divisor
+      *(slope_1_by_y*speed_a2_times_slope_2_by_a2 - slope_2_by_y*speed_a1_times_slope_1_by_a1);
+  const double shared_product_2 = (slope_2_by_z*speed_a1_times_slope_1_by_a1
+      - slope_1_by_z*speed_a2_times_slope_2_by_a2)*one_by_determinant_divisor;
+  const double shared_product_3 = one_by_determinant_divisor
+      *(slope_1_by_y*speed_a3_times_slope_3_by_a3 - slope_3_by_y*speed_a1_times_slope_1_by_a1);
+  const double shared_product_4 = (slope_3_by_z*speed_a1_times_slope_1_by_a1
+      - slope_1_by_z*speed_a3_times_slope_3_by_a3)*one_by_determinant_divisor;
+  const double shared_sum = rate_of_slope_1_by_z*shared_product_5 + rate_of_slope_3_by_y*shared_product_2
+      + rate_of_slope_3_by_z*shared_product - rate_of_slope_2_by_y*shared_product_4
+      - rate_of_slope_2_by_z*shared_product_3;
+  const double shared_product_7 = (slope_2_by_x*speed_a1_times_slope_1_by_a1
+      - slope_1_by_x*speed_a2_times_slope_2_by_a2)*one_by_determinant_divisor;
+  const double shared_product_8 = one_by_determinant_divisor
+      *(slope_1_by_x*speed_a3_times_slope_3_by_a3 - slope_3_by_x*speed_a1_times_slope_1_by_a1);
+  const double shared_product_9 = one_by_determinant_divisor
+      *(slope_2_by_x*speed_a3_times_slope_3_by_a3 - slope_3_by_x*speed_a2_times_slope_2_by_a2);
+  const double shared_sum_2 = rate_of_slope_2_by_x*shared_product_4 + rate_of_slope_2_by_z*shared_product_8
+      + rate_of_slope_3_by_z*shared_product_7 - rate_of_slope_1_by_z*shared_product_9
+      - rate_of_slope_3_by_x*shared_product_2;
+  const double shared_sum_3 = rate_of_slope_2_by_y*shared_product_8 + rate_of_slope_3_by_x*shared_product
+      + rate_of_slope_3_by_y*shared_product_7 - rate_of_slope_1_by_y*shared_product_9
+      - rate_of_slope_2_by_x*shared_product_3;
+  accelerations[0] = shared_product_10 + shared_sum + rate_of_slope_1_by_y*shared_product_6
+      - one_by_determinant_divisor*rate_of_determinant*velocity_x;
+  accelerations[1] = shared_product_11 + shared_sum_2 - rate_of_slope_1_by_x*shared_product_6
+      - one_by_determinant_divisor*rate_of_determinant*velocity_y;
+  accelerations[2] = shared_product_12 - shared_sum_3 - rate_of_slope_1_by_x*shared_product_5
+      - one_by_determinant_divisor*rate_of_determinant*velocity_z;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -794,6 +989,11 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double arm_length_squared = p->arm_length*p->arm_length;
   const double arm_length_squared_times_rounding = 1e-12*p->arm_length*p->arm_length;
   const double product_in_determinant_divisor = 2e-12*machine_scale*machine_scale*machine_scale;
+  const double cos_rail_angle_squared_times_2 = 2.0*cos_rail_angle*cos_rail_angle;
+  const double sum_in_rate_of_slope_1_by_a1 = cos_rail_angle_squared_times_2
+      + 2.0*sin_rail_angle*sin_rail_angle;
+  const double sum_in_rate_of_slope_2_by_a2 = cos_rail_angle_squared_times_2
+      + 0.5*sin_rail_angle*sin_rail_angle + 0.5*root_of_3*root_of_3*sin_rail_angle*sin_rail_angle;
   const double product_in_pivot_2_y = 0.5*root_of_3*sin_rail_angle;
   const double sum_in_pivot_2_y = 0.5*p->inner_radius*root_of_3 - 0.5*p->outer_radius*root_of_3;
   const double inner_radius_minus_outer_radius = p->inner_radius - p->outer_radius;
@@ -839,6 +1039,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.arm_length_squared = arm_length_squared;
   made.arm_length_squared_times_rounding = arm_length_squared_times_rounding;
   made.product_in_determinant_divisor = product_in_determinant_divisor;
+  made.sum_in_rate_of_slope_1_by_a1 = sum_in_rate_of_slope_1_by_a1;
+  made.sum_in_rate_of_slope_2_by_a2 = sum_in_rate_of_slope_2_by_a2;
   made.product_in_pivot_2_y = product_in_pivot_2_y;
   made.sum_in_pivot_2_y = sum_in_pivot_2_y;
   made.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius;
@@ -898,6 +1100,7 @@ const softkin_mechanism tripod_linear_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -940,6 +1143,17 @@ softkin_status tripod_linear_branches(const tripod_linear_machine *machine, cons
 softkin_status tripod_linear_jacobian(const tripod_linear_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&tripod_linear_mechanism, machine, axes, rows, why);
+}
+
+softkin_status tripod_linear_axis_velocities(const tripod_linear_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&tripod_linear_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status tripod_linear_axis_accelerations(const tripod_linear_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&tripod_linear_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status tripod_linear_singularity(const tripod_linear_machine *machine, const double *axes,

@@ -86,13 +86,14 @@ typedef struct {
   double lowest_a1, highest_a1, lowest_a2, highest_a2, lowest_a3, highest_a3, outer_radius, inner_radius,
       arm_length, offset_a1, offset_a2, offset_a3, min_type2_margin, tie, sin_rail_angle, cos_rail_angle,
       assembly_sign, sin_max_angle_ball_joint, root_of_3, product_in_normal_divisor, arm_length_squared,
-      arm_length_squared_times_rounding, product_in_determinant_divisor, product_in_pivot_2_y,
-      sum_in_pivot_2_y, inner_radius_minus_outer_radius, half_sin_rail_angle, sum_in_pivot_2_x,
-      one_by_arm_length, sin_rail_angle_times_root_of_3, twice_cos_rail_angle, half_by_arm_length,
-      product_in_radicand_a1, cos_rail_angle_squared, product_in_radicand_a2, product_in_radicand_a2_2,
-      cos_rail_angle_times_sin_rail_angle, sin_rail_angle_squared_times_1_by_4,
-      quotient_in_type2_rods_coplanar, root_of_3_times_half_by_arm_length, one_minus_sin_rail_angle_squared,
-      sum_in_radicand_a2, quotient_in_margin_rods_coplanar, twice_sin_rail_angle, sum_in_slope_1_by_x;
+      arm_length_squared_times_rounding, product_in_determinant_divisor, sum_in_rate_of_slope_1_by_a1,
+      sum_in_rate_of_slope_2_by_a2, product_in_pivot_2_y, sum_in_pivot_2_y, inner_radius_minus_outer_radius,
+      half_sin_rail_angle, sum_in_pivot_2_x, one_by_arm_length, sin_rail_angle_times_root_of_3,
+      twice_cos_rail_angle, half_by_arm_length, product_in_radicand_a1, cos_rail_angle_squared,
+      product_in_radicand_a2, product_in_radicand_a2_2, cos_rail_angle_times_sin_rail_angle,
+      sin_rail_angle_squared_times_1_by_4, quotient_in_type2_rods_coplanar,
+      root_of_3_times_half_by_arm_length, one_minus_sin_rail_angle_squared, sum_in_radicand_a2,
+      quotient_in_margin_rods_coplanar, twice_sin_rail_angle, sum_in_slope_1_by_x;
 } tripod_linear_machine;
 
 /** The machine as data, for code that works with any machine. */
@@ -153,6 +154,15 @@ softkin_status tripod_linear_branches(const tripod_linear_machine *machine, cons
 /** The Jacobian, per radian: 3 rows of 3. */
 softkin_status tripod_linear_jacobian(const tripod_linear_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status tripod_linear_axis_velocities(const tripod_linear_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status tripod_linear_axis_accelerations(const tripod_linear_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 4 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status tripod_linear_singularity(const tripod_linear_machine *machine, const double *axes,

@@ -434,6 +434,145 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const tripod_p3z_machine *k = machine;
+  const double axis_a1 = axes[0], axis_a2 = axes[1], axis_a3 = axes[2], speed_a1 = speeds[0],
+      speed_a2 = speeds[1], speed_a3 = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a1 = axis_a1 - k->offset_a1;
+  const double a2 = axis_a2 - k->offset_a2;
+  const double centre_1_to_2_z = a2 - a1;
+  const double a3 = axis_a3 - k->offset_a3;
+  const double centre_1_to_3_z = a3 - a1;
+  /* normal to the plane of the centres */
+  const double normal_x = k->centre_1_to_2_y*centre_1_to_3_z - centre_1_to_2_z*k->centre_1_to_3_y;
+  const double normal_y = centre_1_to_2_z*k->centre_1_to_3_x - k->centre_1_to_2_x*centre_1_to_3_z;
+  /* squared length of the normal */
+  const double normal_square = k->normal_z_squared + normal_x*normal_x + normal_y*normal_y;
+  /* the centres coincide or lie on a line: nothing holds the plate */
+  if (!(normal_square > k->product_in_normal_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE,
+        "the centres coincide or lie on a line: nothing holds the plate", "", 0.0, 0);
+  }
+  /* trilateration: the foot projected on the vector to centre 2, times its length */
+  const double projection_2 = k->sum_in_projection_2 + 0.5*centre_1_to_2_z*centre_1_to_2_z;
+  /* trilateration: the foot projected on the vector to centre 3, times its length */
+  const double projection_3 = k->sum_in_projection_3 + 0.5*centre_1_to_3_z*centre_1_to_3_z;
+  const double one_by_normal_square = 1.0/normal_square;
+  /* foot of the perpendicular, seen from centre 1 */
+  const double foot_x = one_by_normal_square
+      *((k->centre_1_to_3_y_times_normal_z - centre_1_to_3_z*normal_y)*projection_2
+      + (centre_1_to_2_z*normal_y - k->centre_1_to_2_y_times_normal_z)*projection_3);
+  const double foot_y = one_by_normal_square
+      *((centre_1_to_3_z*normal_x - k->centre_1_to_3_x_times_normal_z)*projection_2
+      + (k->centre_1_to_2_x_times_normal_z - centre_1_to_2_z*normal_x)*projection_3);
+  const double foot_z = one_by_normal_square
+      *((k->centre_1_to_3_x*normal_y - k->centre_1_to_3_y*normal_x)*projection_2
+      + (k->centre_1_to_2_y*normal_x - k->centre_1_to_2_x*normal_y)*projection_3);
+  /* square of the height over the plane of the centres */
+  const double height_square = k->arm_length_squared - foot_x*foot_x - foot_y*foot_y - foot_z*foot_z;
+  /* the rods do not meet */
+  if (!(height_square >= -k->arm_length_squared_times_rounding)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "the rods do not meet", "", 0.0, 0);
+  }
+  /* height, as a multiple of the normal */
+  const double height_by_normal = softkin_root(height_square*one_by_normal_square)*k->assembly_sign;
+  const double x = foot_x + k->pivot_1_x + height_by_normal*normal_x;
+  const double slope_1_by_x = 2.0*(x - k->product_in_slope_1_by_x);
+  const double y = foot_y + k->pivot_1_y + height_by_normal*normal_y;
+  const double slope_1_by_y = 2.0*(y - k->product_in_slope_1_by_y);
+  const double z = a1 + foot_z + height_by_normal*k->normal_z;
+  const double slope_1_by_z = 2.0*(z - a1);
+  const double slope_2_by_y = 2.0*(y - k->product_in_slope_2_by_y);
+  const double slope_2_by_z = 2.0*(z - a2);
+  const double slope_3_by_y = 2.0*(y - k->product_in_slope_3_by_y);
+  const double slope_3_by_z = 2.0*(z - a3);
+  const double sum_in_determinant = slope_2_by_y*slope_3_by_z - slope_2_by_z*slope_3_by_y;
+  const double slope_2_by_x = 2.0*(x - k->product_in_slope_2_by_x);
+  const double slope_3_by_x = 2.0*(x - k->product_in_slope_3_by_x);
+  const double sum_in_determinant_2 = slope_2_by_z*slope_3_by_x - slope_2_by_x*slope_3_by_z;
+  const double sum_in_determinant_3 = slope_2_by_x*slope_3_by_y - slope_2_by_y*slope_3_by_x;
+  /* determinant dPhi/dx: zero in a type 2 singularity */
+  const double determinant = slope_1_by_x*sum_in_determinant + slope_1_by_y*sum_in_determinant_2
+      + slope_1_by_z*sum_in_determinant_3;
+  /* nothing controls the plate */
+  if (!(fabs(determinant) > k->product_in_determinant_divisor)) {
+    return softkin_refuse(why, SOFTKIN_IMPOSSIBLE, "nothing controls the plate", "", 0.0, 0);
+  }
+  const double one_by_determinant = 1.0/determinant;
+  const double sum_in_velocity_y = slope_1_by_z*slope_3_by_x - slope_1_by_x*slope_3_by_z;
+  const double sum_in_velocity_y_2 = slope_1_by_x*slope_2_by_z - slope_1_by_z*slope_2_by_x;
+  const double slope_3_by_z_times_speed_a3 = slope_3_by_z*speed_a3;
+  const double slope_2_by_z_times_speed_a2 = slope_2_by_z*speed_a2;
+  const double speed_a1_times_slope_1_by_z = slope_1_by_z*speed_a1;
+  const double velocity_y = (speed_a1_times_slope_1_by_z*sum_in_determinant_2
+      - slope_2_by_z_times_speed_a2*sum_in_velocity_y - slope_3_by_z_times_speed_a3*sum_in_velocity_y_2)
+      *one_by_determinant;
+  const double rate_of_slope_1_by_y = 2.0*velocity_y;
+  const double sum_in_velocity_z = slope_1_by_x*slope_3_by_y - slope_1_by_y*slope_3_by_x;
+  const double sum_in_velocity_z_2 = slope_1_by_y*slope_2_by_x - slope_1_by_x*slope_2_by_y;
+  const double velocity_z = (speed_a1_times_slope_1_by_z*sum_in_determinant_3
+      - slope_2_by_z_times_speed_a2*sum_in_velocity_z - slope_3_by_z_times_speed_a3*sum_in_velocity_z_2)
+      *one_by_determinant;
+  const double rate_of_slope_1_by_z = 2.0*(velocity_z - speed_a1);
+  const double rate_of_slope_2_by_z = 2.0*(velocity_z - speed_a2);
+  const double rate_of_slope_3_by_z = 2.0*(velocity_z - speed_a3);
+  const double shared_sum = slope_1_by_y*slope_3_by_z - slope_1_by_z*slope_3_by_y;
+  const double shared_sum_2 = slope_1_by_z*slope_2_by_y - slope_1_by_y*slope_2_by_z;
+  const double velocity_x = (speed_a1_times_slope_1_by_z*sum_in_determinant
+      - shared_sum*slope_2_by_z_times_speed_a2 - shared_sum_2*slope_3_by_z_times_speed_a3)*one_by_determinant;
+  const double rate_of_slope_1_by_x = 2.0*velocity_x;
+  const double rate_of_determinant = (sum_in_determinant - shared_sum - shared_sum_2)*rate_of_slope_1_by_x
+      + rate_of_slope_1_by_y*(sum_in_determinant_2 - sum_in_velocity_y - sum_in_velocity_y_2)
+      + rate_of_slope_1_by_z*sum_in_determinant_3 - rate_of_slope_2_by_z*sum_in_velocity_z
+      - rate_of_slope_3_by_z*sum_in_velocity_z_2;
+  const double shared_sum_3 = slope_1_by_y*slope_2_by_z_times_speed_a2
+      - slope_2_by_y*speed_a1_times_slope_1_by_z;
+  const double shared_sum_4 = slope_3_by_y*speed_a1_times_slope_1_by_z
+      - slope_1_by_y*slope_3_by_z_times_speed_a3;
+  const double shared_sum_5 = slope_2_by_y*slope_3_by_z_times_speed_a3
+      - slope_2_by_z_times_speed_a2*slope_3_by_y;
+  const double shared_sum_7 = slope_2_by_x*speed_a1_times_slope_1_by_z
+      - slope_1_by_x*slope_2_by_z_times_speed_a2;
+  const double shared_sum_8 = slope_1_by_x*slope_3_by_z_times_speed_a3
+      - slope_3_by_x*speed_a1_times_slope_1_by_z;
+  const double shared_sum_9 = slope_2_by_z_times_speed_a2*slope_3_by_x
+      - slope_2_by_x*slope_3_by_z_times_speed_a3;
+  const double speed_a3_times_rate_of_slope_3_by_z = rate_of_slope_3_by_z*speed_a3;
+  const double speed_a2_times_rate_of_slope_2_by_z = rate_of_slope_2_by_z*speed_a2;
+  const double speed_a1_times_rate_of_slope_1_by_z = rate_of_slope_1_by_z*speed_a1;
+  const double shared_sum_12 = speed_a2_times_rate_of_slope_2_by_z*sum_in_velocity_z
+      + speed_a3_times_rate_of_slope_3_by_z*sum_in_velocity_z_2
+      - speed_a1_times_rate_of_slope_1_by_z*sum_in_determinant_3;
+  const double shared_sum_6 = slope_1_by_z
+      *((speed_a2 - speed_a1)*slope_2_by_z + slope_3_by_z*(speed_a1 - speed_a3))
+      + (speed_a3 - speed_a2)*slope_2_by_z*slope_3_by_z;
+  const double shared_sum_10 = (shared_sum*speed_a2_times_rate_of_slope_2_by_z
+      + shared_sum_2*speed_a3_times_rate_of_slope_3_by_z - rate_of_slope_1_by_y*shared_sum_6
+      - speed_a1_times_rate_of_slope_1_by_z*sum_in_determinant)*one_by_determinant
+      + one_by_determinant*rate_of_determinant*velocity_x;
+  const double shared_sum_11 = one_by_determinant
+      *(rate_of_slope_1_by_x*shared_sum_6 + speed_a2_times_rate_of_slope_2_by_z*sum_in_velocity_y
+      + speed_a3_times_rate_of_slope_3_by_z*sum_in_velocity_y_2
+      - speed_a1_times_rate_of_slope_1_by_z*sum_in_determinant_2)
+      + one_by_determinant*rate_of_determinant*velocity_y;
+  accelerations[0] = -shared_sum_10 - one_by_determinant*rate_of_slope_1_by_z*shared_sum_5
+      - one_by_determinant*rate_of_slope_2_by_z*shared_sum_4
+      - one_by_determinant*rate_of_slope_3_by_z*shared_sum_3;
+  accelerations[1] = -shared_sum_11 - one_by_determinant*rate_of_slope_1_by_z*shared_sum_9
+      - one_by_determinant*rate_of_slope_2_by_z*shared_sum_8
+      - one_by_determinant*rate_of_slope_3_by_z*shared_sum_7;
+  accelerations[2] = one_by_determinant
+      *(rate_of_slope_1_by_x*(shared_sum_3 + shared_sum_4 + shared_sum_5)
+      + rate_of_slope_1_by_y*(shared_sum_7 + shared_sum_8 + shared_sum_9) - shared_sum_12)
+      - one_by_determinant*rate_of_determinant*velocity_z;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -793,6 +932,7 @@ const softkin_mechanism tripod_p3z_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -835,6 +975,17 @@ softkin_status tripod_p3z_branches(const tripod_p3z_machine *machine, const soft
 softkin_status tripod_p3z_jacobian(const tripod_p3z_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&tripod_p3z_mechanism, machine, axes, rows, why);
+}
+
+softkin_status tripod_p3z_axis_velocities(const tripod_p3z_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&tripod_p3z_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status tripod_p3z_axis_accelerations(const tripod_p3z_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&tripod_p3z_mechanism, machine, axes, velocities, twist_rate,
+      accelerations, why);
 }
 
 softkin_status tripod_p3z_singularity(const tripod_p3z_machine *machine, const double *axes, double *margins,

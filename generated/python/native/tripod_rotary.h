@@ -92,7 +92,8 @@ typedef struct {
       product_in_divisor_a2, product_in_determinant_divisor, arm_length_1_times_root_of_3_times_half,
       sum_in_pivot_2_y, half_arm_length_1, sum_in_pivot_2_x, one_by_arm_length_2, half_by_arm_length_2,
       twice_arm_length_1, quotient_in_type2_rods_coplanar, root_of_3_times_half_by_arm_length_2,
-      quotient_in_margin_rods_coplanar, sum_in_slope_1_by_x, arm_length_1_times_root_of_3;
+      quotient_in_margin_rods_coplanar, sum_in_slope_1_by_x, arm_length_1_times_root_of_3,
+      arm_length_1_squared_times_2, product_in_rate_of_slope_2_by_a2;
   bool single_a1, single_a2, single_a3;
 } tripod_rotary_machine;
 
@@ -154,6 +155,15 @@ softkin_status tripod_rotary_branches(const tripod_rotary_machine *machine, cons
 /** The Jacobian, per radian: 3 rows of 3. */
 softkin_status tripod_rotary_jacobian(const tripod_rotary_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 3 numbers, rows as in the Jacobian. */
+softkin_status tripod_rotary_axis_velocities(const tripod_rotary_machine *machine, const double *axes,
+    const double *twist, double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 3 numbers, at the velocities that the axes have.
+ * */
+softkin_status tripod_rotary_axis_accelerations(const tripod_rotary_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 4 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status tripod_rotary_singularity(const tripod_rotary_machine *machine, const double *axes,

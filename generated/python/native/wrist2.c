@@ -252,6 +252,37 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const wrist2_machine *k = machine;
+  const double axis_a = axes[0], axis_b = axes[1], speed_a = speeds[0], speed_b = speeds[1];
+  if (!softkin_are_reasonable((const double[]){speed_a, speed_b, axis_a, axis_b}, 4)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a = SOFTKIN_DEGREE*(axis_a - k->offset_a);
+  const double sin_a = sin(a);
+  const double cos_a = cos(a);
+  const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
+  const double cos_b = cos(b);
+  const double r11_at_b = cos_a*cos_b;
+  const double r21_at_b = cos_b*sin_a;
+  const double rate_of_sin_b = speed_b*cos_b;
+  const double rate_of_r31_at_b = -rate_of_sin_b*k->tool_side;
+  const double rate_of_sin_a = speed_a*cos_a;
+  const double rate_of_cos_a = -speed_a*sin_a;
+  const double rate_of_cos_b = -sin(b)*speed_b;
+  const double rate_of_r11_at_b = rate_of_cos_b*cos_a + rate_of_cos_a*cos_b;
+  const double rate_of_r21_at_b = rate_of_sin_a*cos_b + rate_of_cos_b*sin_a;
+  const double tool_side_times_speed_b = speed_b*k->tool_side;
+  accelerations[0] = rate_of_r31_at_b*speed_a
+      + tool_side_times_speed_b*(rate_of_r21_at_b*cos_a + r21_at_b*rate_of_cos_a - r11_at_b*rate_of_sin_a
+      - rate_of_r11_at_b*sin_a);
+  accelerations[1] = 2.0*rate_of_sin_a*tool_side_times_speed_b*sin_a
+      + rate_of_cos_a*speed_b*k->twice_tool_side*cos_a;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -319,6 +350,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   }
   const double tool_length_times_tool_side = (int)p->tool_side*p->tool_length;
   const double one_by_tool_side = 1.0/(int)p->tool_side;
+  const double twice_tool_side = 2.0*(int)p->tool_side;
   made.lowest_a = window_of_a.lowest;
   made.highest_a = window_of_a.highest;
   made.single_a = window_of_a.single;
@@ -335,6 +367,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_b = p->offset_b;
   made.tool_length_times_tool_side = tool_length_times_tool_side;
   made.one_by_tool_side = one_by_tool_side;
+  made.twice_tool_side = twice_tool_side;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};
   *(wrist2_machine *)machine = made;
   return SOFTKIN_OK;
@@ -373,6 +406,7 @@ const softkin_mechanism wrist2_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -415,6 +449,17 @@ softkin_status wrist2_branches(const wrist2_machine *machine, const softkin_fram
 softkin_status wrist2_jacobian(const wrist2_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&wrist2_mechanism, machine, axes, rows, why);
+}
+
+softkin_status wrist2_axis_velocities(const wrist2_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&wrist2_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status wrist2_axis_accelerations(const wrist2_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&wrist2_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status wrist2_singularity(const wrist2_machine *machine, const double *axes, double *margins,

@@ -70,7 +70,8 @@ typedef struct {
   /** The ranges in force, infinite if there is no limit. */
   softkin_ends ends[WRIST2_LIMITS];
   double lowest_a, highest_a, mid_a, lowest_b, highest_b, mid_b, roll_axis_offset_x, roll_axis_offset_y,
-      roll_axis_offset_z, tool_side, offset_a, offset_b, tool_length_times_tool_side, one_by_tool_side;
+      roll_axis_offset_z, tool_side, offset_a, offset_b, tool_length_times_tool_side, one_by_tool_side,
+      twice_tool_side;
   bool single_a, single_b;
 } wrist2_machine;
 
@@ -132,6 +133,15 @@ softkin_status wrist2_branches(const wrist2_machine *machine, const softkin_fram
 /** The Jacobian, per radian: 2 rows of 2. */
 softkin_status wrist2_jacobian(const wrist2_machine *machine, const double *axes, double *rows,
     softkin_refusal *why);
+
+/** The velocities of the axes for a twist of the frame, per radian: 2 numbers, rows as in the Jacobian. */
+softkin_status wrist2_axis_velocities(const wrist2_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why);
+
+/** The accelerations of the axes for the rate of the twist, 2 numbers, at the velocities that the axes have.
+ * */
+softkin_status wrist2_axis_accelerations(const wrist2_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why);
 
 /** 1 margins, and whether the axis values are singular (NULL if not wanted). */
 softkin_status wrist2_singularity(const wrist2_machine *machine, const double *axes, double *margins,

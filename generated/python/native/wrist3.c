@@ -297,6 +297,32 @@ static softkin_status find_jacobian(const void *machine, const double *axes, dou
   return SOFTKIN_OK;
 }
 
+/* The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian. */
+static softkin_status find_bias(const void *machine, const double *axes, const double *speeds,
+    double *accelerations, softkin_refusal *why) {
+  const wrist3_machine *k = machine;
+  const double axis_a = axes[0], axis_b = axes[1], axis_c = axes[2], speed_a = speeds[0],
+      speed_b = speeds[1], speed_c = speeds[2];
+  if (!softkin_are_reasonable((const double[]){speed_a, speed_b, speed_c, axis_a, axis_b, axis_c}, 6)) {
+    return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
+  }
+  const double a = SOFTKIN_DEGREE*(axis_a - k->offset_a);
+  const double cos_a = cos(a);
+  const double rate_of_sin_a = speed_a*cos_a;
+  const double sin_a = sin(a);
+  const double rate_of_cos_a = -speed_a*sin_a;
+  const double b = SOFTKIN_DEGREE*(axis_b - k->offset_b);
+  const double sin_b = sin(b);
+  const double rate_of_sin_b = cos(b)*speed_b;
+  const double rate_of_r13_at_b = -rate_of_sin_b*cos_a - rate_of_cos_a*sin_b;
+  const double rate_of_r23_at_b = -rate_of_sin_a*sin_b - rate_of_sin_b*sin_a;
+  const double rate_of_cos_b = -speed_b*sin_b;
+  accelerations[0] = rate_of_r13_at_b*speed_c + rate_of_sin_a*speed_b;
+  accelerations[1] = rate_of_r23_at_b*speed_c - rate_of_cos_a*speed_b;
+  accelerations[2] = rate_of_cos_b*speed_c;
+  return SOFTKIN_OK;
+}
+
 /* Every branch on its turns, of good input; false where digits may be lost: there a branch by itself
  * has an answer. */
 static bool find_every_branch(const void *machine, const softkin_frame *frame, const double *reference,
@@ -434,6 +460,7 @@ const softkin_mechanism wrist3_mechanism = {
     .limit = find_limits,
     .singularity = find_singularity,
     .jacobian = find_jacobian,
+    .bias = find_bias,
     .every_branch = find_every_branch,
 };
 
@@ -476,6 +503,17 @@ softkin_status wrist3_branches(const wrist3_machine *machine, const softkin_fram
 softkin_status wrist3_jacobian(const wrist3_machine *machine, const double *axes, double *rows,
     softkin_refusal *why) {
   return softkin_jacobian(&wrist3_mechanism, machine, axes, rows, why);
+}
+
+softkin_status wrist3_axis_velocities(const wrist3_machine *machine, const double *axes, const double *twist,
+    double *velocities, softkin_refusal *why) {
+  return softkin_axis_velocities(&wrist3_mechanism, machine, axes, twist, velocities, why);
+}
+
+softkin_status wrist3_axis_accelerations(const wrist3_machine *machine, const double *axes,
+    const double *velocities, const double *twist_rate, double *accelerations, softkin_refusal *why) {
+  return softkin_axis_accelerations(&wrist3_mechanism, machine, axes, velocities, twist_rate, accelerations,
+      why);
 }
 
 softkin_status wrist3_singularity(const wrist3_machine *machine, const double *axes, double *margins,

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from softkin.delta_c import DeltaC
     from softkin.delta_p3c_type3 import DeltaP3CType3
     from softkin.dualscara import DualScara
+    from softkin.excavator import Excavator
     from softkin.gantry2 import Gantry2
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
+    from softkin.rodpalletizer import RodPalletizer
     from softkin.scara2_z import Scara2Z
     from softkin.scara3_ccz import Scara3CCZ
     from softkin.scara3_z import Scara3Z
@@ -81,6 +83,8 @@ if TYPE_CHECKING:
     from softkin.scara4_zccoupled_type1 import Scara4ZCcoupledType1
     from softkin.scaraonrail import ScaraOnRail
     from softkin.sccc import SCCC
+    from softkin.scissorlift import ScissorLift
+    from softkin.skewgantry3 import SkewGantry3
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
@@ -115,6 +119,7 @@ __all__ = [
     "DeltaP3CType3",
     "Diagnosis",
     "DualScara",
+    "Excavator",
     "Frame",
     "FrameLike",
     "Gantry2",
@@ -147,6 +152,7 @@ __all__ = [
     "Polar",
     "PolarZ",
     "PosRRR",
+    "RodPalletizer",
     "Rotation",
     "Scara2Z",
     "Scara3CCZ",
@@ -156,7 +162,9 @@ __all__ = [
     "Scara4ZCCC",
     "Scara4ZCcoupledType1",
     "ScaraOnRail",
+    "ScissorLift",
     "Singularity",
+    "SkewGantry3",
     "Solution",
     "Status",
     "TGantry2",
@@ -193,6 +201,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_Delta_C": ("delta_c", "DeltaC"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
     "Softkin_DualScara": ("dualscara", "DualScara"),
+    "Softkin_Excavator": ("excavator", "Excavator"),
     "Kin_Gantry2": ("gantry2", "Gantry2"),
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
@@ -220,6 +229,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),
+    "Softkin_RodPalletizer": ("rodpalletizer", "RodPalletizer"),
     "Kin_Scara2_Z": ("scara2_z", "Scara2Z"),
     "Kin_Scara3_CCZ": ("scara3_ccz", "Scara3CCZ"),
     "Kin_Scara3_Z": ("scara3_z", "Scara3Z"),
@@ -229,6 +239,8 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Scara4_ZCcoupled_Type1": ("scara4_zccoupled_type1", "Scara4ZCcoupledType1"),
     "Softkin_ScaraOnRail": ("scaraonrail", "ScaraOnRail"),
     "Kin_SCCC": ("sccc", "SCCC"),
+    "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
+    "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),

@@ -90,6 +90,15 @@ class Programs(ABC):
         """The twist of the frame by rows, where the Jacobian lacks rows that are not zero."""
         raise NotImplementedError
 
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian at constant speeds of the axes."""
+        rows, status = self.twist_bias(axes, speeds)
+        return tuple(rows[row] for row in self.JACOBIAN_ROWS), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist at constant speeds of the axes, where `twist` is a program."""
+        raise NotImplementedError
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have: the rotation itself, unless a program says otherwise."""
         return rotation, passed(*rotation)

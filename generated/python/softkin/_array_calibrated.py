@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from softkin._array import Codes, Matrix, Programs, Reals, Rotation, Signs, Turns, Vector
-from softkin._chain import columns
+from softkin._chain import bias, columns
 from softkin._chain import passed as chained
 from softkin._core import TWIST
 from softkin._radians_array import RadianPrograms
@@ -79,6 +79,20 @@ class CalibratedPrograms(Programs):
         scaled = [[gain * entry for entry in column] for gain, column in zip(self.machine._gains, found, strict=True)]
         return tuple(zip(*scaled, strict=True)) if scaled else ((),) * len(TWIST), status
 
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian at constant speeds of the axes."""
+        rows, status = self.twist_bias(axes, speeds)
+        (_, rotation), _ = chained(self.machine._true, self.machine._motors(axes), np.cos, np.sin)
+        known = dict(zip(TWIST, rows, strict=True))
+        known |= {name: dot(along, rows[3:]) for name, along in zip(TILTS, transposed(rotation), strict=False)}
+        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist of the tool at constant speeds of the axes."""
+        _, status = self.nominal.forward(self.machine._actual(axes))
+        (place, _), lines = chained(self.machine._true, self.machine._motors(axes), np.cos, np.sin)
+        return bias(self.machine._true, lines, place, self.machine._gained_speeds(speeds)), status
+
 
 class GainedPrograms(RadianPrograms):
     """The programs of a closed loop with deviations: those of a loop with its dimensions, and the gains of the axes."""
@@ -103,6 +117,14 @@ class GainedPrograms(RadianPrograms):
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The rows of the twist, by the axes themselves."""
         return self._gained(*super().twist(axes))
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian at constant speeds, by the axes themselves."""
+        return super().bias(axes, self.machine._gained_speeds(speeds))
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist at constant speeds, by the axes themselves."""
+        return super().twist_bias(axes, self.machine._gained_speeds(speeds))
 
     def _gained(self, rows: Matrix, status: Codes) -> tuple[Matrix, Codes]:
         gains = self.machine._gains

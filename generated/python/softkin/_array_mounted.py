@@ -21,9 +21,22 @@ from softkin._array import (
     reasonable,
     select,
 )
-from softkin._array_coupled import all_six, both, fixed, moved, plus, product, seen_from, transposed, turned
+from softkin._array_coupled import (
+    all_six,
+    bias_of_all_six,
+    both,
+    fixed,
+    moved,
+    plus,
+    product,
+    seen_from,
+    transposed,
+    turned,
+)
 from softkin._core import PITCH, TURN, TWIST
+from softkin._tools import TILTS
 from softkin._types import Status
+from softkin._vectors import at_end, dot, rates, turned_twist
 
 if TYPE_CHECKING:
     from softkin._mounted import Mounted
@@ -111,10 +124,10 @@ class MountedPrograms(Programs):
         bare, outcome = self.programs.jacobian(axes)
         for name, row in zip(self.machine.bare.JACOBIAN_ROWS, bare, strict=True):
             known.setdefault(name, row)
-        if "tilt x" in known:
+        if TILTS[0] in known:
             (_, rotation, _), failed = self.forward(axes)
             status = both(status, failed)
-            for name, axis in zip(("tilt x", "tilt y"), transposed(rotation), strict=False):
+            for name, axis in zip(TILTS, transposed(rotation), strict=False):
                 known[name] = tuple(axis[0] * x + axis[1] * y + axis[2] * z for x, y, z in zip(*own[3:], strict=True))
         return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), both(status, outcome)
 
@@ -127,6 +140,28 @@ class MountedPrograms(Programs):
         columns = [(*turned(base, c[:3]), *turned(base, c[3:])) for c in columns]
         matrix = tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
         return matrix, both(status, failed)
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """As `jacobian`: the axes of the tool turn with it, so that they change no turn about them."""
+        own, status = self.twist_bias(axes, speeds)
+        known = dict(zip(TWIST, own, strict=True))
+        bare, outcome = self.programs.bias(axes, speeds)
+        for name, row in zip(self.machine.bare.JACOBIAN_ROWS, bare, strict=True):
+            known.setdefault(name, row)
+        if TILTS[0] in known:
+            (_, rotation, _), failed = self.forward(axes)
+            status = both(status, failed)
+            known |= {name: dot(axis, own[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
+        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), both(status, outcome)
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist of the tool at constant speeds of the axes."""
+        bare = self.machine.bare
+        rows, status = all_six(bare, self.programs, axes)
+        own, outcome = bias_of_all_six(bare, self.programs, axes, speeds)
+        (_, flange, _), failed = self.programs.forward(axes)
+        moving = at_end(own, rates(rows[3:], speeds), turned(flange, self.tool))
+        return turned_twist(self.base_rotation, moving), both(both(status, outcome), failed)
 
 
 class StartedMountedPrograms(MountedPrograms, StartedPrograms):

@@ -38,7 +38,7 @@ CHUNK = 8192
 EVERY_SLOT = 3 * CHUNK
 """The largest number of rows times slots computed together where all slots are computed, since slots share values."""
 FEWEST = 512
-"""The least number of rows computed together, unless there are fewer; the second of a root scan with many trials."""
+"""The least number of rows computed together, unless there are fewer; the second of a root search with many trials."""
 MANY = 100_000
 """From this size of a result on, intermediate values must take little memory, however few rows then go together."""
 SHARE = 0.25

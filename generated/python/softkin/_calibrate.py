@@ -43,7 +43,7 @@ class Errors(NamedTuple):
     """Of distances from the first point."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Calibration:
     """What measurements say of a machine. `print` shows it as a table."""
 
@@ -73,6 +73,11 @@ class Calibration:
     """The geometric mean of the singular values, by the root of the number of samples (Borm and Menq): larger is
     better, for as many deviations."""
     samples: int
+
+    def __repr__(self) -> str:
+        """The machine, the number of deviations, and the errors that are left."""
+        found = f"{len(self.deviations)} deviations from {self.samples} samples"
+        return f"<Calibration of {self.machine.NAME}: {found}, {self.after.position:.3g} u left>"
 
     def __str__(self) -> str:
         """The table."""

@@ -12,7 +12,7 @@ from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from softkin._chain import columns, passed, true_chain
+from softkin._chain import bias, columns, passed, true_chain
 from softkin._configuration import Criterion
 from softkin._core import TWIST, Image, Mechanism, Pose
 from softkin._deviations import are_inputs, checked, units_of
@@ -37,7 +37,7 @@ from softkin._types import (
     Turns,
     Vector,
 )
-from softkin._vectors import transposed
+from softkin._vectors import dot, transposed
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -241,6 +241,24 @@ class Calibrated(Mechanism):
         found = columns(self._true, lines, place, len(axes))
         scaled = [[gain * entry for entry in column] for gain, column in zip(self._gains, found, strict=True)]
         return tuple(zip(*scaled, strict=True)) if scaled else ((),) * len(TWIST)
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        rows, rotation = self._twist_bias(axes, speeds), self._orientation(axes)
+        if isinstance(rows, Status) or isinstance(rotation, Status):
+            return Status.BAD_INPUT
+        known = dict(zip(TWIST, rows, strict=True))
+        known |= {name: dot(axis, rows[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
+        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        if not reasonable(*axes):
+            return Status.BAD_INPUT
+        (place, _), lines = passed(self._true, self._motors(axes))
+        return bias(self._true, lines, place, self._gained_speeds(speeds))
+
+    def _gained_speeds(self, speeds: Reals) -> Reals:
+        """The speeds of the actual axes."""
+        return tuple([gain * speed for gain, speed in zip(self._gains, speeds, strict=True)])
 
     def with_tool(self, tool: FrameLike) -> Mounted:
         """This machine with a tool at its flange, in front of which its deviation stands: see `Mechanism.with_tool`."""

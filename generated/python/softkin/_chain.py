@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import DEGREE, cos, sin
 from softkin._types import Axis, Rotation, Vector
-from softkin._vectors import plus, product, turned
+from softkin._vectors import cross, plus, product, rates, turned
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -81,7 +81,7 @@ def true_chain(robot: Mechanism, deviations: Mapping[str, float], base: Placed, 
             frames.append(placed(placed(here, own), off))
             here = placed(_inverse(off), _inverse(own))
         if link.fixed:
-            here = placed(here, _motion(link.motion == "turn", link.axis, link.fixed))
+            here = placed(here, motion(link.motion == "turn", link.axis, link.fixed))
     return Chain((*frames, placed(placed(here, of_tool), tool)), joints)
 
 
@@ -130,6 +130,27 @@ def columns(chain: Chain, lines: Sequence[Placed], place: Vector, count: int) ->
     return found
 
 
+def bias(chain: Chain, lines: Sequence[Placed], place: Vector, speeds: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The acceleration of a point that moves with the tool, and that of the tool's turn, at constant speeds of motors.
+
+    Every column of `columns` has a rate: its line moves with the joints before it, and the point with all of them.
+    """
+    found = columns(chain, lines, place, len(speeds))
+    rows = tuple(zip(*found, strict=True)) if found else ((),) * 6
+    moving, spin, shift, whole = rates(rows[:3], speeds), ORIGIN, ORIGIN, (ORIGIN, ORIGIN)
+    for joint, (origin, rotation) in zip(chain.joints, lines, strict=True):
+        along = rotation[0][2], rotation[1][2], rotation[2][2]
+        speed = sum(share * speeds[i] for i, share in joint.motors)
+        swung, carried = cross(spin, along), plus(shift, cross(spin, origin))
+        if joint.turns:
+            way = plus(cross(swung, plus(place, origin, -1.0)), cross(along, plus(moving, carried, -1.0)))
+            whole = plus(whole[0], way, speed), plus(whole[1], swung, speed)
+            spin, shift = plus(spin, along, speed), plus(shift, cross(origin, along), speed)
+        else:
+            whole, shift = (plus(whole[0], swung, speed), whole[1]), plus(shift, along, speed)
+    return (*whole[0], *whole[1])
+
+
 def placed(first: Placed, second: Placed) -> Placed:
     """The second frame, which is given in the first one."""
     return plus(first[0], turned(first[1], second[0])), product(first[1], second[1])
@@ -140,7 +161,7 @@ def _inverse(frame: Placed) -> Placed:
     return made.position, made.rotation
 
 
-def _motion(turns: bool, axis: int, amount: float) -> Placed:
+def motion(turns: bool, axis: int, amount: float) -> Placed:
     """A turn about (radians), or a shift along, x, y or z."""
     if not turns:
         x, y, z = (amount if k == axis else 0.0 for k in range(3))
@@ -165,11 +186,11 @@ def _off(joint: Joint, deviations: Mapping[str, float]) -> Placed:
     x, y, about_x, about_y = (
         deviations.get(f"{joint.name}_{k}", 0.0) for k in ("shift_x", "shift_y", "tilt_x", "tilt_y")
     )
-    turn = product(_motion(True, 0, DEGREE * about_x)[1], _motion(True, 1, DEGREE * about_y)[1])
+    turn = product(motion(True, 0, DEGREE * about_x)[1], motion(True, 1, DEGREE * about_y)[1])
     return (x, y, 0.0), turn
 
 
 def _frame(deviations: Mapping[str, float], end: str) -> Placed:
     x, y, z, a, b, c = (deviations.get(f"{end}_{k}", 0.0) for k in "xyzabc")
-    turn = product(_motion(True, 2, DEGREE * c)[1], _motion(True, 1, DEGREE * b)[1])
-    return (x, y, z), product(turn, _motion(True, 0, DEGREE * a)[1])
+    turn = product(motion(True, 2, DEGREE * c)[1], motion(True, 1, DEGREE * b)[1])
+    return (x, y, z), product(turn, motion(True, 0, DEGREE * a)[1])

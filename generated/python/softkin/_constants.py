@@ -20,13 +20,14 @@ NO_MEANING = "byte {byte} of the configuration means nothing"
 ONE_TURN = 350.0
 OTHER_TURN = "{subject}: this turn{axis} is beyond a limit, name one inside"
 PIVOT = 1e-14
+SAME_ROTATION = 1e-6
 SINGULAR = 0.001
 SOLVABLE = 1e30
 TIE = 1e-6
 UNLIMITED = 1e12
 EXTENSION = "_softkin_native"
 """The module with the native core."""
-SOURCES = "369407d2f1ae0dae"
+SOURCES = "d446d33b8a72fd1f"
 """The digest of what all machines share in C: an extension that was made of other sources is not used."""
 STATUSES = {
     "OK": (0, "SMC_NO_ERROR", "no error"),

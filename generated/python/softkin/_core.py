@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import inf, isfinite, nan
+from os import PathLike
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Protocol, Self, TypeAlias, cast
 
@@ -52,6 +53,7 @@ from softkin._types import (
     Vector,
 )
 from softkin._value import Value
+from softkin._vectors import turn_between
 
 if TYPE_CHECKING:
     import numpy as np
@@ -63,6 +65,8 @@ if TYPE_CHECKING:
     from softkin._names import NamedConfiguration
     from softkin._nearest import Measure
     from softkin._path import Path
+    from softkin._timed import Timed
+    from softkin._view import View
 
 WARNING_DISTANCE = SINGULAR
 """A pose of a coupling, which has no parameters, is singular where a margin is smaller than this in size."""
@@ -165,6 +169,8 @@ class Mechanism(Value, ABC):
     """The indices of the axes that have period bytes."""
     HELD: tuple[int, ...] = ()
     """The indices of the axes that the inverse leaves where the reference has them."""
+    LINES: tuple[tuple[int, int, str], ...] = ()
+    """What is drawn of a closed loop: lines by the numbers of two points of `_points`, -1 is the tool, and the axes."""
     DISTANCE_AXES: tuple[int, ...]
     """The indices of the axes that decide an automatic choice."""
 
@@ -365,7 +371,8 @@ class Mechanism(Value, ABC):
 
         Where the configuration leaves branches open and none has a solution, the reason is that of the first branch.
         Where the turn of an axis is beyond its limits and another turn is not, `turn` is the number of the other one:
-        with it in the period byte, the call succeeds if nothing else refuses.
+        with it in the period byte, the call succeeds if nothing else refuses. Where nothing refuses, `projection` is
+        the angle by which the commanded rotation was changed, because the machine cannot take it.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -379,7 +386,11 @@ class Mechanism(Value, ABC):
         axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
         if isinstance(axes, Diagnosis):
             return axes
-        return self._beyond_limits(axes) or Diagnosis(Status.OK, "", 0.0)
+        if (refused := self._beyond_limits(axes)) is not None:
+            return refused
+        reached = self._started(position, rotation)._orientation(axes) if self.READS_ROTATION else rotation
+        turn = 0.0 if isinstance(reached, Status) else self._full_turn() * turn_between(rotation, reached)
+        return Diagnosis(Status.OK, "", 0.0, projection=turn)
 
     def nearest(
         self, frame: FrameLike, reference: Numbers, *, weights: Numbers | None = None, measure: Measure = "squares"
@@ -485,6 +496,20 @@ class Mechanism(Value, ABC):
         """The path from one frame straight to another: `path` of both."""
         return self.path((start, goal), configuration, reference, samples=samples, singular=singular)
 
+    def move(
+        self, start: Numbers, goal: Numbers, limits: Mapping[str, Sequence[float]], *, step: float = 0.01
+    ) -> Timed:
+        """The move of all axes from point to point, as fast as their limits allow: all start and arrive together.
+
+        start, goal: axis values, inside the limits of the axes. limits: for every axis by name its highest speed and
+        acceleration (trapezoids of speed), or speed, acceleration and jerk (S-curves), per second, in the unit of the
+        axis. step: the seconds from one time of the result to the next. Raises UNREACHABLE beyond limits, BAD_INPUT for
+        other input, ImportError without ruckig.
+        """
+        from softkin import _timed
+
+        return _timed.move(self, start, goal, limits, step)
+
     def __str__(self) -> str:
         """A table of the axes with their limits, the parameters that are given, and the branches, by name."""
         from softkin import _tables
@@ -496,6 +521,28 @@ class Mechanism(Value, ABC):
         from softkin import _tables
 
         return _tables.html(self)
+
+    def plot(self, axes: Numbers, ax: Any = None) -> Any:
+        """Draw the machine at axis values with matplotlib: its lines, the names of its axes, the frame of the tool.
+
+        axes: one value for each axis. ax: three-dimensional axes of matplotlib to draw in; None makes a figure.
+        Returns the axes of matplotlib. Raises ImportError without matplotlib, and the errors of `forward`.
+        """
+        from softkin import _plot
+
+        return _plot.machine(self, reals(axes, len(self.AXES), "axes"), ax)
+
+    def view(self, axes: Numbers | None = None, page: str | PathLike[str] | None = None) -> View:
+        """The machine in the viewer, for a notebook: the whole page stands in the result, and needs no server.
+
+        axes: where it stands, one value for each axis; None for the pose of the drawing.
+        page: the page of the viewer that has this machine, which `make view` and `softkin view` write; None for the
+        one that a wheel of the package carries. Raises NOT_INITIALIZED where there is none, or if the page has no such
+        machine (a coupling).
+        """
+        from softkin import _view
+
+        return _view.view(self, axes, page)
 
     def in_radians(self) -> Self:
         """The same machine with radians for degrees: axes, references, offsets, limits, the amounts of `diagnose`.
@@ -589,6 +636,98 @@ class Mechanism(Value, ABC):
         from softkin import _velocities
 
         return _velocities.axis_velocities(self, axes, twist, held, damping, length)
+
+    def twist_rate(self, axes: Numbers, velocities: Numbers, accelerations: Numbers) -> Reals:
+        """The acceleration of the frame: the rate of `twist`, row by row, J a + J' v.
+
+        velocities, accelerations: one for each axis, of `HELD` axes too, in the units of `twist`. Raises the errors of
+        `jacobian`, and BAD_INPUT for invalid numbers.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.twist_rate(self, axes, velocities, accelerations)
+
+    def axis_accelerations(
+        self,
+        axes: Numbers,
+        velocities: Numbers,
+        twist_rate: Numbers,
+        *,
+        held: Numbers | None = None,
+        damping: float = 0.0,
+        length: float | None = None,
+    ) -> Reals:
+        """The accelerations of all axes that give the frame an acceleration: the inverse of `twist_rate`, in its units.
+
+        velocities: those that the axes have, as `axis_velocities` finds them. twist_rate: one number for each of
+        `JACOBIAN_ROWS`; zeros on a straight line at constant speed. held: the accelerations of the axes of `HELD`.
+        damping, length and the errors are those of `axis_velocities`.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_accelerations(self, axes, velocities, twist_rate, held, damping, length)
+
+    def largest_feed(
+        self,
+        axes: Numbers,
+        twist: Numbers,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rate: Numbers | None = None,
+    ) -> float:
+        """The largest constant speed along a path that the limits of the axes allow at a pose; infinite without limits.
+
+        twist: that of the frame at speed 1: for a feed in lengths per time, x, y and z are a vector of length 1.
+        velocities, accelerations: the largest size that each may have, one positive number for each axis, in radians
+        per time for an axis in degrees; None for no limit. twist_rate: the rate of the twist at speed 1, which is the
+        curvature of the path; None for a straight line. Axes of `HELD` do not move.
+        Raises the errors of `axis_velocities`, and BAD_INPUT for limits that are not positive.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.largest_feed(self, axes, twist, twist_rate, (velocities, accelerations))
+
+    def axis_velocities_batch(
+        self, axes: ArrayLike, twists: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`axis_velocities` of N rows: axes (N, n), twists (N, rows) → velocities (N, n), statuses (N,).
+
+        Without damping; axes of `HELD` do not move. A row whose status is not OK holds NaN: singular poses are
+        IMPOSSIBLE. Raises BAD_INPUT for a wrong shape.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_velocities_batch(self, self._array_programs(), axes, twists)
+
+    def axis_accelerations_batch(
+        self, axes: ArrayLike, velocities: ArrayLike, twist_rates: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`axis_accelerations` of N rows: axes (N, n), velocities (N, n), twist rates (N, rows) → accelerations (N, n),
+        statuses (N,), as in `axis_velocities_batch`.
+        """
+        from softkin import _accelerations
+
+        return _accelerations.axis_accelerations_batch(self, self._array_programs(), axes, velocities, twist_rates)
+
+    def largest_feed_batch(
+        self,
+        axes: ArrayLike,
+        twists: ArrayLike,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rates: ArrayLike | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """`largest_feed` of N rows: axes (N, n), twists (N, rows), twist rates (N, rows) → speeds (N,), statuses (N,).
+
+        The limits are the same for all rows. A row whose status is not OK holds NaN. Raises BAD_INPUT for a wrong
+        shape.
+        """
+        from softkin import _accelerations
+
+        limits = velocities, accelerations
+        return _accelerations.largest_feed_batch(self, self._array_programs(), axes, twists, twist_rates, limits)
 
     def condition(self, axes: Numbers, length: float | None = None) -> float:
         """The condition number of the Jacobian: at least 1, and infinite where the pose is singular to all digits.
@@ -767,6 +906,10 @@ class Mechanism(Value, ABC):
     def _chain(self) -> tuple[Link, ...] | None:
         """The chain of a serial machine as it is described, from the base to the frame; None for a closed loop."""
         return None
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """The points of a closed loop that are drawn, three numbers each: see `LINES`."""
+        return ()
 
     def _axis_zeros(self) -> Reals:
         """The axis values at which the joints are zero."""
@@ -959,6 +1102,19 @@ class Mechanism(Value, ABC):
             return rows
         known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
         return tuple(known.get(row, (0.0,) * len(axes)) for row in TWIST)
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian at constant speeds of the axes."""
+        rows = self._twist_bias(axes, speeds)
+        return rows if isinstance(rows, Status) else tuple(rows[TWIST.index(row)] for row in self.JACOBIAN_ROWS)
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The same of the six rows of the twist."""
+        rows = self._bias(axes, speeds)
+        if isinstance(rows, Status):
+            return rows
+        known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
+        return tuple(known.get(row, 0.0) for row in TWIST)
 
     def _turns_unseen(self) -> bool:
         """Whether the Jacobian lacks rows of the twist that are not zero."""

@@ -36,7 +36,7 @@ from softkin._types import (
     Turns,
     Vector,
 )
-from softkin._vectors import moved, plus, product, seen_from, transposed, turned
+from softkin._vectors import at_end, dot, moved, plus, product, rates, seen_from, transposed, turned, turned_twist
 
 if TYPE_CHECKING:
     from softkin._array import Programs, StartedPrograms
@@ -300,6 +300,31 @@ class Mounted(Mechanism):
         columns = [moved(column, arm) for column in zip(*rows, strict=True)]
         columns = [(*turned(base, c[:3]), *turned(base, c[3:])) for c in columns]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """As `_jacobian`: the axes of the tool turn with it, so that they change no turn about them."""
+        own, rotation = self._twist_bias(axes, speeds), self._orientation(axes)
+        bare = self.bare._bias(axes, speeds)
+        if isinstance(own, Status):
+            return own
+        if isinstance(rotation, Status):
+            return rotation
+        if isinstance(bare, Status):
+            return bare
+        known = dict(zip(self.bare.JACOBIAN_ROWS, bare, strict=True)) | dict(zip(TWIST, own, strict=True))
+        known |= {name: dot(axis, own[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
+        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        rows, flange, own = self.bare._twist(axes), self.bare._orientation(axes), self.bare._twist_bias(axes, speeds)
+        if isinstance(rows, Status):
+            return rows
+        if isinstance(flange, Status):
+            return flange
+        if isinstance(own, Status):
+            return own
+        arm = turned(flange, self.tool.position)
+        return turned_twist(self.base.rotation, at_end(own, rates(rows[3:], speeds), arm))
 
     def _image(self) -> Image | Status:
         image = self.bare._image()

@@ -237,6 +237,12 @@ class InRadians(Mechanism):
     def _twist(self, axes: Reals) -> Matrix | Status:
         return self.part._twist(self._deg(axes))
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        return self.part._bias(self._deg(axes), speeds)
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        return self.part._twist_bias(self._deg(axes), speeds)
+
     def _turns_unseen(self) -> bool:
         return self.part._turns_unseen()
 

@@ -23,6 +23,12 @@ def between(start: Frame, goal: Frame, share: float) -> Frame:
     return Frame((x, y, z), rotation_of(_slerp(quaternion_of(start.rotation), quaternion_of(goal.rotation), share)))
 
 
+def angle_between(start: Rotation, goal: Rotation) -> float:
+    """The angle of the turn from one rotation to the other, in radians."""
+    along = sum(a * b for a, b in zip(quaternion_of(start), quaternion_of(goal), strict=True))
+    return 2.0 * acos(min(abs(along), 1.0))
+
+
 def quaternion_of(rotation: Rotation) -> Quaternion:
     """The unit quaternion (w, x, y, z) of a rotation: the largest of its four numbers first, so that none is lost."""
     (a, b, c), (d, e, f), (g, h, i) = rotation

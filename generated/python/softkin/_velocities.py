@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 _Array = NDArray[np.float64]
 _SINGULAR = 4.0 * float(np.finfo(np.float64).eps)
 """A singular value smaller than this share of the largest one is zero to all digits."""
-_MISSED = 1e-9
+MISSED = 1e-9
 """A twist is reached where what is missing of it is at most this share of its size."""
 _LINEAR = ("x", "y", "z")
 
 
 def twist(robot: Mechanism, axes: Numbers, velocities: Numbers) -> Reals:
     """The velocity of the frame."""
-    moved = _numbers(robot, "twist", velocities, len(robot.AXES), "velocities")
+    moved = checked(robot, "twist", velocities, len(robot.AXES), "velocities")
     return tuple((_jacobian(robot, axes) @ moved).tolist())
 
 
@@ -32,10 +32,22 @@ def axis_velocities(
     robot: Mechanism, axes: Numbers, wanted: Numbers, held: Numbers | None, damping: float, length: float | None
 ) -> Reals:
     """The velocities of the axes."""
-    call = "axis_velocities"
-    given = _numbers(robot, call, wanted, len(robot.JACOBIAN_ROWS), "twist")
-    carried = _numbers(robot, call, [0.0] * len(robot.HELD) if held is None else held, len(robot.HELD), "held")
-    (damped,) = _numbers(robot, call, (damping,), 1, "damping")
+    given = checked(robot, "axis_velocities", wanted, len(robot.JACOBIAN_ROWS), "twist")
+    return solved_for_axes(robot, "axis_velocities", axes, given, held, damping, length)
+
+
+def solved_for_axes(
+    robot: Mechanism,
+    call: str,
+    axes: Numbers,
+    given: _Array,
+    held: Numbers | None,
+    damping: float,
+    length: float | None,
+) -> Reals:
+    """The values of the axes whose product with the Jacobian is given: exact, or by damped least squares."""
+    carried = checked(robot, call, [0.0] * len(robot.HELD) if held is None else held, len(robot.HELD), "held")
+    (damped,) = checked(robot, call, (damping,), 1, "damping")
     if damped < 0.0:
         raise _bad(robot, call, f"damping must be 0 or positive, not {damping!r}")
     rows, columns = _sizes(robot, call, length, is_needed=damped > 0.0)
@@ -84,7 +96,7 @@ def _exact(robot: Mechanism, call: str, matrix: _Array, right: _Array) -> _Array
         return np.asarray(np.linalg.solve(matrix, right), np.float64)
     solved = np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0], np.float64)
     missing = right - matrix @ solved
-    if np.abs(missing).max(initial=0.0) > _MISSED * np.abs(right).max(initial=0.0):
+    if np.abs(missing).max(initial=0.0) > MISSED * np.abs(right).max(initial=0.0):
         worst = robot.JACOBIAN_ROWS[int(np.argmax(np.abs(missing)))]
         message = f"{robot.NAME}.{call}: the axes cannot move the frame so: {worst} is missed"
         raise KinematicsError(Status.UNREACHABLE, message)
@@ -113,7 +125,7 @@ def _sizes(robot: Mechanism, call: str, length: float | None, *, is_needed: bool
         if is_needed and _is_mixed(robot):
             raise _bad(robot, call, "its rows or its axes differ in their unit: a characteristic length is needed")
         length = 1.0
-    (size,) = _numbers(robot, call, (length,), 1, "length")
+    (size,) = checked(robot, call, (length,), 1, "length")
     if not size > 0.0:
         raise _bad(robot, call, f"length must be positive, not {length!r}")
     rows = np.array([size if row in _LINEAR else 1.0 for row in robot.JACOBIAN_ROWS])
@@ -127,7 +139,8 @@ def _is_mixed(robot: Mechanism) -> bool:
     return len(kinds) > 1 or len({row in _LINEAR for row in robot.JACOBIAN_ROWS}) > 1
 
 
-def _numbers(robot: Mechanism, call: str, values: Numbers, count: int, what: str) -> _Array:
+def checked(robot: Mechanism, call: str, values: Numbers, count: int, what: str) -> _Array:
+    """So many finite numbers. Raises BAD_INPUT."""
     found = np.array(reals(values, count, what))
     if not np.isfinite(found).all():
         raise _bad(robot, call, f"{what} must be finite, not {found.tolist()}")

@@ -32,15 +32,15 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1345850 additions, 1894495 multiplications, 108143 divisions, 44024 square roots, 88088 sines
-    inverse, all 16 branches: 21533873 additions, 30312016 multiplications, 1730288 divisions, 704384 square
-    roots, 1409408 sines
+    inverse: 678629 additions, 895644 multiplications, 34612 divisions, 18014 square roots, 36068 sines
+    inverse, all 16 branches: 10858337 additions, 14330400 multiplications, 553792 divisions, 288224 square
+    roots, 577088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
     12 sines
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
-    one step of the search: at most 2001 passes, all of which are counted
+    one step of the search: at most 1501 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
@@ -54,7 +54,7 @@ Verified at 144 poses, before this file was written, by a witness that knows the
     Jacobian against automatic differentiation below 1e-12,
     solutions found by a search from many starts: 8, each of which the inverse finds, too.
     The equations were not checked in a finite field: its roots are searched along a joint.
-    A root scan is no proof: of 406 solutions, most of them close to poses where branches meet, it missed 0.
+    Of 406 solutions, most of them close to poses where branches meet, the root search missed 0.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 476710dd8035783c"
+    KEY = "ac6_rzryryrxryrz_j6offset f4d0abcee072b5eb"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -651,14 +651,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + sum_in_rounding_0_8
             + abs(wave_cos_0)
         )
-        size_of_wave_cos_9_times_32 = 32.0 * abs(wave_cos_9)
-        rounding_1 = max(rounding_0, size_of_wave_cos_9_times_32)
-        size_of_wave_cos_10_times_32 = 32.0 * abs(wave_cos_10)
-        rounding_2 = max(rounding_1, size_of_wave_cos_10_times_32)
-        size_of_wave_sin_9_times_32 = 32.0 * abs(wave_sin_9)
-        rounding_3 = max(rounding_2, size_of_wave_sin_9_times_32)
-        size_of_wave_sin_10_times_32 = 32.0 * abs(wave_sin_10)
-        rounding_4 = max(rounding_3, size_of_wave_sin_10_times_32)
+        size_of_wave_cos_9_times_1000 = 1000.0 * abs(wave_cos_9)
+        rounding_1 = max(rounding_0, size_of_wave_cos_9_times_1000)
+        size_of_wave_cos_10_times_1000 = 1000.0 * abs(wave_cos_10)
+        rounding_2 = max(rounding_1, size_of_wave_cos_10_times_1000)
+        size_of_wave_sin_9_times_1000 = 1000.0 * abs(wave_sin_9)
+        rounding_3 = max(rounding_2, size_of_wave_sin_9_times_1000)
+        size_of_wave_sin_10_times_1000 = 1000.0 * abs(wave_sin_10)
+        rounding_4 = max(rounding_3, size_of_wave_sin_10_times_1000)
         sum_in_bound_of_fifth = (
             2.025 * sum_in_rounding_0_2
             + 64.8 * sum_in_rounding_0_3
@@ -1689,6 +1689,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last,
             growth_before,
             bend,
+            settled_1,
+            settled_2,
+            settled_3,
+            settled_4,
+            settled_5,
+            settled_6,
             q1,
             met_from_q1,
             kept_q1,
@@ -1720,7 +1726,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0,
             False,
             9.0,
-            2000,
+            1500,
             0.0,
             0,
             0.0,
@@ -1729,6 +1735,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
             0.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
             0.0,
             0.0,
             0.0,
@@ -1748,7 +1760,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
         )
-        for _ in range(2001):
+        for _ in range(1501):
             place_plus_width = place + width
             if stage == 0:
                 found = self._look_at_wave(
@@ -1830,9 +1842,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if best_now_minus_way_now < place
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
-            is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 8) or (abs(at - newton_place) <= 1e-10))
+            is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 5) or (abs(at - newton_place) <= 1e-10))
+            is_known = (
+                (abs(best_now - settled_1) <= 1e-9)
+                or (abs(best_now - settled_2) <= 1e-9)
+                or (abs(best_now - settled_3) <= 1e-9)
+                or (abs(best_now - settled_4) <= 1e-9)
+                or (abs(best_now - settled_5) <= 1e-9)
+                or (abs(best_now - settled_6) <= 1e-9)
+            )
             is_near = is_settled and (
-                (width > 1e-6) or ((least_now <= 0.001) and ((room_of_trial <= 1e-6) or (side > 0)))
+                ((not is_known) and (width > 1e-6))
+                or ((least_now <= 0.001) and (width <= 1e-6) and ((room_of_trial <= 1e-6) or (side > 0)))
             )
             if is_near:
                 found = self._joints_at(
@@ -1914,7 +1935,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
             )
             start_minus_q6 = start - q6
-            distance = (
+            way_ahead = (
                 1e-7
                 + 180.0 * DEGREE
                 + arctan2(
@@ -1927,11 +1948,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             is_better = (
                 fits
                 and meets_pose
-                and (distance < nearest)
-                and ((not onward) or ((distance > 1e-7) and (distance < sum_in_way_ends)))
+                and (way_ahead < nearest)
+                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_way_ends)))
             )
-            nearest_now = distance if is_better else nearest
-            is_shortest = (stage == 1) and (trials >= 21)
+            nearest_now = way_ahead if is_better else nearest
+            is_shortest = (stage == 1) and (trials >= 11)
             moved = (
                 abs(met_from_q1 - q1)
                 + abs(met_from_q2 - q2)
@@ -1946,7 +1967,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             number_of_start_plus_one = 1 + number_of_start
             next_number = (
                 number_of_start_plus_one
-                if number_of_start < (1 if width <= 1e-9 else (3 if width <= 0.0001 else (5 if width <= 0.01 else 9)))
+                if number_of_start < (1 if width <= 1e-9 else (3 if width <= 0.001 else (5 if width <= 0.1 else 9)))
                 else (
                     (10 if width > 1e-6 else 0)
                     if number_of_start <= 9
@@ -1996,7 +2017,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     0.0
                     if part_is_done
                     else (
-                        (2.0 * width if width > 0.0 else (1e-13 if is_rounding else 0.0))
+                        ((8.0 if width <= 1e-6 else 2.0) * width if width > 0.0 else (1e-13 if is_rounding else 0.0))
                         if (not part_ends) and (stage == 0)
                         else width
                     )
@@ -2008,8 +2029,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             gap = growth - growth_before
             way_of_trial = at - last
             bend_now = (
-                gap / (way_of_trial if (trials > 9) and (gap * way_of_trial > 0.0) else 1.0)
-                if (trials > 9) and (gap * way_of_trial > 0.0)
+                gap / (way_of_trial if (trials > 5) and (gap * way_of_trial > 0.0) else 1.0)
+                if (trials > 5) and (gap * way_of_trial > 0.0)
                 else bend
             )
             bend_now_2 = bend_now if bend_now > 0.0 else 1.0
@@ -2022,20 +2043,20 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             steps_left_next = 64 if is_near or mirrors else steps_left + (-8 if error > 0.999 * error_before else -1)
             was_mirrored_next = (not is_near) and (mirrors or was_mirrored)
             passes_left_next = passes_left - 1
-            spread = 0.125 * width
+            spread = 0.25 * width
             spread_times_1_by_4 = 0.25 * spread
             best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4
             at_minus_growth_by_bend_now = at - growth / bend_now_2
             value_in_shortening_place = (
                 best_now
-                if trials < 9
+                if trials < 5
                 else (
                     (
                         best_now - spread_times_1_by_4
                         if best_now_plus_spread_times_1_by_4 > place_plus_width
                         else best_now_plus_spread_times_1_by_4
                     )
-                    if trials == 9
+                    if trials == 5
                     else (
                         place
                         if at_minus_growth_by_bend_now < place
@@ -2047,7 +2068,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     )
                 )
             )
-            shortening_place = place + (1.0 + trials) * spread if trials < 8 else value_in_shortening_place
+            shortening_place = place + (1.0 + trials) * spread if trials < 4 else value_in_shortening_place
             sum_in_place_of_start = (
                 place
                 + (
@@ -2105,24 +2126,30 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last_next = place_of_start if begins or is_shortest else at
             growth_before_next = 0.0 if begins or is_shortest else growth
             bend_next = 0.0 if begins or is_shortest else bend_now
+            settled_1_next = 9.0 if is_first else (best_now if is_near else settled_1)
+            settled_2_next = 9.0 if is_first else (settled_1 if is_near else settled_2)
+            settled_3_next = 9.0 if is_first else (settled_2 if is_near else settled_3)
+            settled_4_next = 9.0 if is_first else (settled_3 if is_near else settled_4)
+            settled_5_next = 9.0 if is_first else (settled_4 if is_near else settled_5)
+            settled_6_next = 9.0 if is_first else (settled_5 if is_near else settled_6)
             q1_next = begun_q1 if is_near else (2.0 * met_from_q1 - q1 if mirrors else moved_q1)
             met_from_q1_next = begun_q1 if is_near else met_from_q1
-            kept_q1_next = q1 if is_better else kept_q1
+            kept_now_q1 = q1 if is_better else kept_q1
             q2_next = begun_q2 if is_near else (2.0 * met_from_q2 - q2 if mirrors else moved_q2)
             met_from_q2_next = begun_q2 if is_near else met_from_q2
-            kept_q2_next = q2 if is_better else kept_q2
+            kept_now_q2 = q2 if is_better else kept_q2
             q3_next = begun_q3 if is_near else (2.0 * met_from_q3 - q3 if mirrors else moved_q3)
             met_from_q3_next = begun_q3 if is_near else met_from_q3
-            kept_q3_next = q3 if is_better else kept_q3
+            kept_now_q3 = q3 if is_better else kept_q3
             q4_next = begun_q4 if is_near else (2.0 * met_from_q4 - q4 if mirrors else moved_q4)
             met_from_q4_next = begun_q4 if is_near else met_from_q4
-            kept_q4_next = q4 if is_better else kept_q4
+            kept_now_q4 = q4 if is_better else kept_q4
             q5_next = begun_q5 if is_near else (2.0 * met_from_q5 - q5 if mirrors else moved_q5)
             met_from_q5_next = begun_q5 if is_near else met_from_q5
-            kept_q5_next = q5 if is_better else kept_q5
+            kept_now_q5 = q5 if is_better else kept_q5
             q6_next = begun_q6 if is_near else (2.0 * met_from_q6 - q6 if mirrors else moved_q6)
             met_from_q6_next = begun_q6 if is_near else met_from_q6
-            kept_q6_next = q6 if is_better else kept_q6
+            kept_now_q6 = q6 if is_better else kept_q6
             if is_over or (not looked_for):
                 break
             stage = next_stage
@@ -2146,33 +2173,39 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last = last_next
             growth_before = growth_before_next
             bend = bend_next
+            settled_1 = settled_1_next
+            settled_2 = settled_2_next
+            settled_3 = settled_3_next
+            settled_4 = settled_4_next
+            settled_5 = settled_5_next
+            settled_6 = settled_6_next
             q1 = q1_next
             met_from_q1 = met_from_q1_next
-            kept_q1 = kept_q1_next
+            kept_q1 = kept_now_q1
             q2 = q2_next
             met_from_q2 = met_from_q2_next
-            kept_q2 = kept_q2_next
+            kept_q2 = kept_now_q2
             q3 = q3_next
             met_from_q3 = met_from_q3_next
-            kept_q3 = kept_q3_next
+            kept_q3 = kept_now_q3
             q4 = q4_next
             met_from_q4 = met_from_q4_next
-            kept_q4 = kept_q4_next
+            kept_q4 = kept_now_q4
             q5 = q5_next
             met_from_q5 = met_from_q5_next
-            kept_q5 = kept_q5_next
+            kept_q5 = kept_now_q5
             q6 = q6_next
             met_from_q6 = met_from_q6_next
-            kept_q6 = kept_q6_next
+            kept_q6 = kept_now_q6
         return (
             nearest_now < 9.0,
             (nearest_now if nearest_now < 9.0 else 0.0),
-            kept_q1,
-            kept_q2,
-            kept_q3,
-            kept_q4,
-            kept_q5,
-            kept_q6,
+            kept_now_q1,
+            kept_now_q2,
+            kept_now_q3,
+            kept_now_q4,
+            kept_now_q5,
+            kept_now_q6,
         )
 
     def _search_given(
@@ -2969,6 +3002,279 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self._constants
+        a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
+        offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
+        if not reasonable(
+            speed_a1,
+            speed_a2,
+            speed_a3,
+            speed_a4,
+            speed_a5,
+            speed_a6,
+            axis_a1,
+            axis_a2,
+            axis_a3,
+            axis_a4,
+            axis_a5,
+            axis_a6,
+        ):
+            return Status.BAD_INPUT
+        q1 = DEGREE * (axis_a1 - offset_a1)
+        sin_q1 = sin(q1)
+        q2 = DEGREE * (axis_a2 - offset_a2)
+        q3 = DEGREE * (axis_a3 - offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r21_at_q23 = cos_q23 * sin_q1
+        cos_q1 = cos(q1)
+        sin_q23 = sin(q2_plus_q3)
+        y_at_q2 = a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        r23_at_q23 = sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        rate_of_sin_q1 = speed_a1 * cos_q1
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_cos_q23 = -speed_a2_plus_speed_a3 * sin_q23
+        rate_of_r21_at_q23 = rate_of_sin_q1 * cos_q23 + rate_of_cos_q23 * sin_q1
+        rate_of_cos_q1 = -speed_a1 * sin_q1
+        rate_of_sin_q23 = speed_a2_plus_speed_a3 * cos_q23
+        rate_of_r23_at_q23 = rate_of_sin_q1 * sin_q23 + rate_of_sin_q23 * sin_q1
+        rate_of_sin_q4 = speed_a4 * cos_q4
+        rate_of_cos_q4 = -speed_a4 * sin_q4
+        rate_of_r23_at_q4 = (
+            rate_of_r23_at_q23 * cos_q4
+            + r23_at_q23 * rate_of_cos_q4
+            - rate_of_sin_q4 * cos_q1
+            - rate_of_cos_q1 * sin_q4
+        )
+        rate_of_sin_q5 = speed_a5 * cos_q5
+        rate_of_cos_q5 = -speed_a5 * sin_q5
+        rate_of_r23_at_q5 = (
+            rate_of_r23_at_q4 * cos_q5
+            + r21_at_q23 * rate_of_sin_q5
+            + r23_at_q4 * rate_of_cos_q5
+            + rate_of_r21_at_q23 * sin_q5
+        )
+        rate_of_y_at_q2 = a1 * rate_of_sin_q1
+        cos_q2 = cos(q2)
+        rate_of_sin_q2 = speed_a2 * cos_q2
+        rate_of_r23_at_q2 = rate_of_sin_q1 * sin_q2 + rate_of_sin_q2 * sin_q1
+        rate_of_y_at_q3 = rate_of_y_at_q2 + a2 * rate_of_r23_at_q2
+        rate_of_y_at_q4 = rate_of_y_at_q3 + a3 * rate_of_r23_at_q23
+        rate_of_y_at_q5 = rate_of_y_at_q4 + d4 * rate_of_r21_at_q23
+        rate_of_r21_at_q5 = (
+            rate_of_r21_at_q23 * cos_q5
+            + r21_at_q23 * rate_of_cos_q5
+            - r23_at_q4 * rate_of_sin_q5
+            - rate_of_r23_at_q4 * sin_q5
+        )
+        rate_of_y_at_q6 = rate_of_y_at_q5 + j6_offset_x * rate_of_r21_at_q5
+        rate_of_y = rate_of_y_at_q6 + d6 * rate_of_r23_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        rate_of_r33_at_q4 = rate_of_cos_q4 * cos_q23 + rate_of_cos_q23 * cos_q4
+        rate_of_r33_at_q5 = (
+            rate_of_r33_at_q4 * cos_q5
+            + r33_at_q4 * rate_of_cos_q5
+            - rate_of_sin_q23 * sin_q5
+            - rate_of_sin_q5 * sin_q23
+        )
+        rate_of_cos_q2 = -speed_a2 * sin_q2
+        rate_of_z_at_q3 = a2 * rate_of_cos_q2
+        rate_of_z_at_q4 = rate_of_z_at_q3 + a3 * rate_of_cos_q23
+        rate_of_z_at_q5 = rate_of_z_at_q4 - d4 * rate_of_sin_q23
+        rate_of_r31_at_q5 = (
+            -rate_of_sin_q23 * cos_q5
+            - r33_at_q4 * rate_of_sin_q5
+            - rate_of_cos_q5 * sin_q23
+            - rate_of_r33_at_q4 * sin_q5
+        )
+        rate_of_z_at_q6 = rate_of_z_at_q5 + j6_offset_x * rate_of_r31_at_q5
+        rate_of_z = rate_of_z_at_q6 + d6 * rate_of_r33_at_q5
+        rate_of_r22_at_q4 = (
+            rate_of_cos_q4 * cos_q1
+            + rate_of_cos_q1 * cos_q4
+            + r23_at_q23 * rate_of_sin_q4
+            + rate_of_r23_at_q23 * sin_q4
+        )
+        rate_of_r32_at_q4 = rate_of_sin_q4 * cos_q23 + rate_of_cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
+        x_at_q2 = a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        r13_at_q23 = cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        rate_of_r11_at_q23 = rate_of_cos_q23 * cos_q1 + rate_of_cos_q1 * cos_q23
+        rate_of_r13_at_q23 = rate_of_sin_q23 * cos_q1 + rate_of_cos_q1 * sin_q23
+        rate_of_r13_at_q4 = (
+            rate_of_r13_at_q23 * cos_q4
+            + r13_at_q23 * rate_of_cos_q4
+            + rate_of_sin_q1 * sin_q4
+            + rate_of_sin_q4 * sin_q1
+        )
+        rate_of_r13_at_q5 = (
+            rate_of_r13_at_q4 * cos_q5
+            + r11_at_q23 * rate_of_sin_q5
+            + r13_at_q4 * rate_of_cos_q5
+            + rate_of_r11_at_q23 * sin_q5
+        )
+        rate_of_x_at_q2 = a1 * rate_of_cos_q1
+        rate_of_r13_at_q2 = rate_of_sin_q2 * cos_q1 + rate_of_cos_q1 * sin_q2
+        rate_of_x_at_q3 = rate_of_x_at_q2 + a2 * rate_of_r13_at_q2
+        rate_of_x_at_q4 = rate_of_x_at_q3 + a3 * rate_of_r13_at_q23
+        rate_of_x_at_q5 = rate_of_x_at_q4 + d4 * rate_of_r11_at_q23
+        rate_of_r11_at_q5 = (
+            rate_of_r11_at_q23 * cos_q5
+            + r11_at_q23 * rate_of_cos_q5
+            - r13_at_q4 * rate_of_sin_q5
+            - rate_of_r13_at_q4 * sin_q5
+        )
+        rate_of_x_at_q6 = rate_of_x_at_q5 + j6_offset_x * rate_of_r11_at_q5
+        rate_of_x = rate_of_x_at_q6 + d6 * rate_of_r13_at_q5
+        rate_of_r12_at_q4 = (
+            r13_at_q23 * rate_of_sin_q4
+            + rate_of_r13_at_q23 * sin_q4
+            - rate_of_sin_q1 * cos_q4
+            - rate_of_cos_q4 * sin_q1
+        )
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        x_minus_x_at_q4 = x - x_at_q4
+        shared_sum = (d1 - z) * speed_a2 + (z_at_q3 - z) * speed_a3
+        r32_at_q4 = cos_q23 * sin_q4
+        shared_sum_2 = speed_a1 + r32_at_q4 * speed_a5 + r33_at_q5 * speed_a6 - speed_a4 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        shared_sum_3 = (
+            speed_a2_plus_speed_a3 * cos_q1 + r21_at_q23 * speed_a4 + r22_at_q4 * speed_a5 + r23_at_q5 * speed_a6
+        )
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        shared_sum_4 = (
+            r11_at_q23 * speed_a4 + r12_at_q4 * speed_a5 + r13_at_q5 * speed_a6 - speed_a2_plus_speed_a3 * sin_q1
+        )
+        speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3 * speed_a3
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        shared_sum_5 = (
+            r32_at_q4 * rate_of_y_at_q5
+            + rate_of_r22_at_q4 * z_minus_z_at_q5
+            - r22_at_q4 * rate_of_z_at_q5
+            - rate_of_r32_at_q4 * y_minus_y_at_q5
+        ) * speed_a5 + (
+            r33_at_q5 * rate_of_y_at_q6
+            + rate_of_r23_at_q5 * z_minus_z_at_q6
+            - r23_at_q5 * rate_of_z_at_q6
+            - rate_of_r33_at_q5 * y_minus_y_at_q6
+        ) * speed_a6
+        x_minus_x_at_q5 = x - x_at_q5
+        x_minus_x_at_q6 = x - x_at_q6
+        shared_sum_6 = (
+            r32_at_q4 * rate_of_x_at_q5
+            + rate_of_r12_at_q4 * z_minus_z_at_q5
+            - r12_at_q4 * rate_of_z_at_q5
+            - rate_of_r32_at_q4 * x_minus_x_at_q5
+        ) * speed_a5 + (
+            r33_at_q5 * rate_of_x_at_q6
+            + rate_of_r13_at_q5 * z_minus_z_at_q6
+            - r13_at_q5 * rate_of_z_at_q6
+            - rate_of_r33_at_q5 * x_minus_x_at_q6
+        ) * speed_a6
+        shared_sum_8 = (
+            (rate_of_x_at_q2 * speed_a2 + rate_of_x_at_q3 * speed_a3) * cos_q1
+            + (rate_of_y_at_q2 * speed_a2 + rate_of_y_at_q3 * speed_a3) * sin_q1
+            + (
+                r23_at_q5 * rate_of_x_at_q6
+                + rate_of_r13_at_q5 * y_minus_y_at_q6
+                - r13_at_q5 * rate_of_y_at_q6
+                - rate_of_r23_at_q5 * x_minus_x_at_q6
+            )
+            * speed_a6
+        )
+        shared_sum_7 = (
+            r11_at_q23 * rate_of_y_at_q4
+            + rate_of_r21_at_q23 * x_minus_x_at_q4
+            - r21_at_q23 * rate_of_x_at_q4
+            - rate_of_r11_at_q23 * y_minus_y_at_q4
+        ) * speed_a4 + (
+            r12_at_q4 * rate_of_y_at_q5
+            + rate_of_r22_at_q4 * x_minus_x_at_q5
+            - r22_at_q4 * rate_of_x_at_q5
+            - rate_of_r12_at_q4 * y_minus_y_at_q5
+        ) * speed_a5
+        return (
+            shared_sum_5
+            + rate_of_z * shared_sum_3
+            + (
+                rate_of_r21_at_q23 * z_minus_z_at_q4
+                + rate_of_sin_q23 * y_minus_y_at_q4
+                - r21_at_q23 * rate_of_z_at_q4
+                - rate_of_y_at_q4 * sin_q23
+            )
+            * speed_a4
+            - speed_a3_times_rate_of_z_at_q3 * cos_q1
+            - rate_of_cos_q1 * shared_sum
+            - rate_of_y * shared_sum_2,
+            rate_of_x * shared_sum_2
+            + (
+                r11_at_q23 * rate_of_z_at_q4
+                + rate_of_x_at_q4 * sin_q23
+                - rate_of_r11_at_q23 * z_minus_z_at_q4
+                - rate_of_sin_q23 * x_minus_x_at_q4
+            )
+            * speed_a4
+            - shared_sum_6
+            - rate_of_sin_q1 * shared_sum
+            - rate_of_z * shared_sum_4
+            - speed_a3_times_rate_of_z_at_q3 * sin_q1,
+            shared_sum_8
+            + rate_of_cos_q1 * ((x_at_q2 - x) * speed_a2 + (x_at_q3 - x) * speed_a3)
+            + rate_of_sin_q1 * ((y_at_q2 - y) * speed_a2 + (y_at_q3 - y) * speed_a3)
+            + rate_of_y * shared_sum_4
+            - shared_sum_7
+            - rate_of_x * shared_sum_3,
+            rate_of_r11_at_q23 * speed_a4
+            + rate_of_r12_at_q4 * speed_a5
+            + rate_of_r13_at_q5 * speed_a6
+            - rate_of_sin_q1 * speed_a2_plus_speed_a3,
+            rate_of_cos_q1 * speed_a2_plus_speed_a3
+            + rate_of_r21_at_q23 * speed_a4
+            + rate_of_r22_at_q4 * speed_a5
+            + rate_of_r23_at_q5 * speed_a6,
+            rate_of_r32_at_q4 * speed_a5 + rate_of_r33_at_q5 * speed_a6 - rate_of_sin_q23 * speed_a4,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -2978,7 +3284,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         return self._constants.searched
 
     def _all_joints(self, given: Values) -> list[Reals]:
-        """The joints at every root of a root scan."""
+        """The joints at every root of a root search."""
         return every_root(self._find_root, given, 18, 15)
 
     def _chain(self) -> tuple[Link, ...]:

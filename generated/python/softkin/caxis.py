@@ -63,7 +63,7 @@ class CAxis(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis"
-    KEY = "caxis 4e3481611b22e53d"
+    KEY = "caxis 6aff182d3865f2af"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("angle", "offset_c", "C: axis value at the kinematic zero position"),
@@ -194,6 +194,15 @@ class CAxis(OrientationKinematics, TwistChoice):
         if not (-1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         return ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,))
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        (axis_c,) = axes
+        (speed_c,) = speeds
+        # inputs must be numbers, and of reasonable size
+        if not (-1e9 <= speed_c <= 1e9 and -1e9 <= axis_c <= 1e9):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

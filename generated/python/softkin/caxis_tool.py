@@ -70,7 +70,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_CAxis_Tool"
-    KEY = "caxis_tool 9fd437ba99b2762d"
+    KEY = "caxis_tool 11e28e07443f80e4"
     AXES = (Axis(name="C", kind="rotary", unit="deg", meaning="Turn about the flange's Z", multi_turn=True),)
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along the turned X"),
@@ -220,6 +220,27 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         sin_c = sin(c)
         cos_c = cos(c)
         return ((-tool_y * cos_c - tool_x * sin_c,), (tool_x * cos_c - tool_y * sin_c,), (0.0,), (0.0,), (0.0,), (1.0,))
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        (axis_c,) = axes
+        (speed_c,) = speeds
+        k = self._constants
+        offset_c, tool_x, tool_y = k.offset_c, k.tool_x, k.tool_y
+        # inputs must be numbers, and of reasonable size
+        if not (-1e9 <= speed_c <= 1e9 and -1e9 <= axis_c <= 1e9):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        rate_of_sin_c = cos(c) * speed_c
+        rate_of_cos_c = -sin(c) * speed_c
+        return (
+            (-rate_of_cos_c * tool_y - rate_of_sin_c * tool_x) * speed_c,
+            (rate_of_cos_c * tool_x - rate_of_sin_c * tool_y) * speed_c,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

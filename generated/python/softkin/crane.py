@@ -75,7 +75,7 @@ class Crane(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Crane"
-    KEY = "crane e011de7958397cda"
+    KEY = "crane e2396431da69793e"
     AXES = (
         Axis(name="R", kind="linear", unit="u", meaning="Length of the boom", multi_turn=False),
         Axis(name="Theta", kind="rotary", unit="deg", meaning="Azimuth, from X", multi_turn=True),
@@ -109,6 +109,7 @@ class Crane(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = (1,)
     LIMIT_KEYS = ("r", "theta", "phi")
+    LINES = ((2, 2, "Theta"), (0, 0, "Phi"), (0, 1, "R"))
     DISTANCE_AXES = (1, 2)
 
     offset_r: float
@@ -310,6 +311,48 @@ class Crane(OffsetKinematics):
             (cos_phi, 0.0, -r_times_sin_phi),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_r, axis_theta, axis_phi = axes
+        speed_r, speed_theta, speed_phi = speeds
+        k = self._constants
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        if not reasonable(speed_phi, speed_r, speed_theta, axis_phi, axis_r, axis_theta):
+            return Status.BAD_INPUT
+        r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        axis_phi_minus_offset_phi = axis_phi - offset_phi
+        # Phi where the machine has no pose
+        if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
+            return Status.IMPOSSIBLE
+        theta = DEGREE * (axis_theta - offset_theta)
+        cos_theta = cos(theta)
+        sin_theta = sin(theta)
+        rate_of_cos_theta = -speed_theta * sin_theta
+        phi = DEGREE * axis_phi_minus_offset_phi
+        cos_phi = cos(phi)
+        rate_of_sin_phi = speed_phi * cos_phi
+        rate_of_sin_theta = speed_theta * cos_theta
+        sin_phi = sin(phi)
+        rate_of_cos_phi = -speed_phi * sin_phi
+        shared_sum = r * rate_of_sin_phi + speed_r * sin_phi
+        sin_phi_times_speed_theta = speed_theta * sin_phi
+        r_times_speed_theta = r * speed_theta
+        speed_phi_times_rate_of_cos_phi = rate_of_cos_phi * speed_phi
+        return (
+            r * (speed_phi_times_rate_of_cos_phi * cos_theta - rate_of_sin_theta * sin_phi_times_speed_theta)
+            + rate_of_cos_theta * shared_sum
+            + rate_of_sin_phi * (speed_r * cos_theta - r_times_speed_theta * sin_theta)
+            + speed_r * (rate_of_sin_phi * cos_theta - sin_phi_times_speed_theta * sin_theta),
+            r * (rate_of_cos_theta * sin_phi_times_speed_theta + speed_phi_times_rate_of_cos_phi * sin_theta)
+            + rate_of_sin_phi * (r_times_speed_theta * cos_theta + speed_r * sin_theta)
+            + rate_of_sin_theta * shared_sum
+            + speed_r * (cos_theta * sin_phi_times_speed_theta + rate_of_sin_phi * sin_theta),
+            rate_of_cos_phi * speed_r - shared_sum * speed_phi,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -378,6 +421,32 @@ class Crane(OffsetKinematics):
         if not (axis_phi_minus_offset_phi >= -1e-9 and axis_phi_minus_offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ()
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_r, axis_theta, axis_phi = axes
+        k = self._constants
+        offset_phi, offset_r, offset_theta = k.offset_phi, k.offset_r, k.offset_theta
+        r = axis_r - offset_r
+        theta = DEGREE * (axis_theta - offset_theta)
+        phi = DEGREE * (axis_phi - offset_phi)
+        return (
+            0.0,
+            0.0,
+            0.0,
+            cos(theta) * r * sin(phi),
+            r * sin(phi) * sin(theta),
+            cos(phi) * r,
+            0.0,
+            0.0,
+            cos(phi) * r,
+            -r * sin(phi) * sin(theta),
+            cos(theta) * r * sin(phi),
+            cos(phi) * r,
+            cos(phi) * cos(theta) * r,
+            cos(phi) * r * sin(theta),
+            -r * sin(phi),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

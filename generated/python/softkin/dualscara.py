@@ -122,6 +122,8 @@ class Constants:
         quotient_in_margin_rods_aligned = 1.0 / (rod_length_1 * rod_length_2)
         twice_arm_length_1 = 2.0 * arm_length_1
         twice_arm_length_2 = 2.0 * arm_length_2
+        arm_length_1_squared_times_2 = 2.0 * arm_length_1 * arm_length_1
+        arm_length_2_squared_times_2 = 2.0 * arm_length_2 * arm_length_2
         self.base_distance, self.arm_length_1, self.arm_length_2 = base_distance, arm_length_1, arm_length_2
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
@@ -141,6 +143,8 @@ class Constants:
         self.quotient_in_type2_rods_aligned = quotient_in_type2_rods_aligned
         self.quotient_in_margin_rods_aligned = quotient_in_margin_rods_aligned
         self.twice_arm_length_1, self.twice_arm_length_2 = twice_arm_length_1, twice_arm_length_2
+        self.arm_length_1_squared_times_2 = arm_length_1_squared_times_2
+        self.arm_length_2_squared_times_2 = arm_length_2_squared_times_2
 
 
 class DualScara(OffsetKinematics, TwistChoice):
@@ -152,7 +156,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_DualScara"
-    KEY = "dualscara 518a05ebb26d0c73"
+    KEY = "dualscara c3dc2822c50c4395"
     AXES = (
         Axis(
             name="A1",
@@ -220,6 +224,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 3)
     LIMIT_KEYS = ("a1", "a2", "a3", "a4")
+    LINES = ((3, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 1, ""), (1, -1, "A3 A4"))
     DISTANCE_AXES = (0, 1, 3)
 
     base_distance: float
@@ -701,6 +706,133 @@ class DualScara(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 1.0),
         )
 
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self._constants
+        arm_length_1, arm_length_1_squared_times_2 = k.arm_length_1, k.arm_length_1_squared_times_2
+        arm_length_2, arm_length_2_squared_times_2 = k.arm_length_2, k.arm_length_2_squared_times_2
+        assembly_sign, base_distance, half_base_distance = k.assembly_sign, k.base_distance, k.half_base_distance
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
+        product_in_normal_divisor = k.product_in_normal_divisor
+        rod_length_1_minus_rod_length_2 = k.rod_length_1_minus_rod_length_2
+        rod_length_1_plus_rod_length_2 = k.rod_length_1_plus_rod_length_2
+        rod_length_1_squared_times_rounding = k.rod_length_1_squared_times_rounding
+        twice_arm_length_1, twice_arm_length_2 = k.twice_arm_length_1, k.twice_arm_length_2
+        if not reasonable(speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2, axis_a3, axis_a4):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        cos_a1 = cos(a1)
+        pivot_1_x = arm_length_1 * cos_a1 - half_base_distance  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_x = half_base_distance + arm_length_2 * cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = arm_length_1 * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = arm_length_2 * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (rod_length_1_plus_rod_length_2 - between_centres)
+            * (between_centres + rod_length_1_minus_rod_length_2)
+            * (between_centres + rod_length_1_plus_rod_length_2)
+            * (between_centres - rod_length_1_minus_rod_length_2)
+            * one_by_normal_square
+        )
+        # the rods do not meet
+        if not (height_square >= -rod_length_1_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_2_by_x = base_distance + twice_x - twice_arm_length_1 * cos_a1
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_2_by_y = twice_y - twice_arm_length_1 * sin_a1
+        slope_3_by_x = twice_x - base_distance - twice_arm_length_2 * cos_a2
+        slope_3_by_y = twice_y - twice_arm_length_2 * sin_a2
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # nothing controls the plate
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
+            return Status.IMPOSSIBLE
+        x_minus_pivot_1_x = x - pivot_1_x
+        y_minus_pivot_1_y = y - pivot_1_y
+        slope_2_by_a1 = (x_minus_pivot_1_x * sin_a1 - y_minus_pivot_1_y * cos_a1) * twice_arm_length_1
+        x_minus_pivot_2_x = x - pivot_2_x
+        y_minus_pivot_2_y = y - pivot_2_y
+        slope_3_by_a2 = (x_minus_pivot_2_x * sin_a2 - y_minus_pivot_2_y * cos_a2) * twice_arm_length_2
+        one_by_determinant_divisor = 1.0 / determinant
+        speed_a2_times_slope_3_by_a2 = slope_3_by_a2 * speed_a2
+        speed_a1_times_slope_2_by_a1 = slope_2_by_a1 * speed_a1
+        velocity_y = (
+            slope_3_by_x * speed_a1_times_slope_2_by_a1 - slope_2_by_x * speed_a2_times_slope_3_by_a2
+        ) * one_by_determinant_divisor
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_slope_2_by_y = twice_velocity_y - rate_of_sin_a1 * twice_arm_length_1
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_3_by_y = twice_velocity_y - rate_of_sin_a2 * twice_arm_length_2
+        velocity_x = one_by_determinant_divisor * (
+            slope_2_by_y * speed_a2_times_slope_3_by_a2 - slope_3_by_y * speed_a1_times_slope_2_by_a1
+        )
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_slope_2_by_a1 = (
+            (arm_length_1_squared_times_2 * cos_a1 + twice_arm_length_1 * x_minus_pivot_1_x) * rate_of_sin_a1
+            + (velocity_x * sin_a1 - velocity_y * cos_a1) * twice_arm_length_1
+            - (arm_length_1_squared_times_2 * sin_a1 + twice_arm_length_1 * y_minus_pivot_1_y) * rate_of_cos_a1
+        )
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a1 * twice_arm_length_1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_3_by_x = twice_velocity_x - rate_of_cos_a2 * twice_arm_length_2
+        rate_of_determinant = (
+            rate_of_slope_2_by_x * slope_3_by_y
+            + rate_of_slope_3_by_y * slope_2_by_x
+            - rate_of_slope_2_by_y * slope_3_by_x
+            - rate_of_slope_3_by_x * slope_2_by_y
+        )
+        rate_of_slope_3_by_a2 = (
+            (arm_length_2_squared_times_2 * cos_a2 + twice_arm_length_2 * x_minus_pivot_2_x) * rate_of_sin_a2
+            + (velocity_x * sin_a2 - velocity_y * cos_a2) * twice_arm_length_2
+            - (arm_length_2_squared_times_2 * sin_a2 + twice_arm_length_2 * y_minus_pivot_2_y) * rate_of_cos_a2
+        )
+        return (
+            one_by_determinant_divisor
+            * (
+                (-rate_of_slope_2_by_a1 * slope_3_by_y - rate_of_slope_3_by_y * slope_2_by_a1) * speed_a1
+                + (rate_of_slope_2_by_y * slope_3_by_a2 + rate_of_slope_3_by_a2 * slope_2_by_y) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant * velocity_x,
+            one_by_determinant_divisor
+            * (
+                (rate_of_slope_2_by_a1 * slope_3_by_x + rate_of_slope_3_by_x * slope_2_by_a1) * speed_a1
+                + (-rate_of_slope_2_by_x * slope_3_by_a2 - rate_of_slope_3_by_a2 * slope_2_by_x) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant * velocity_y,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -890,6 +1022,39 @@ class DualScara(OffsetKinematics, TwistChoice):
         span_2_x = flange_x - half_base_distance  # rod 2: known part of its vector
         branch_elbow_2 = one_by_rod_length_2 * (flange_y * cos_a2 - span_2_x * sin_a2)
         return (branch_elbow_1, branch_elbow_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, _, _ = axes
+        x, y, _ = position
+        k = self._constants
+        arm_length_1, arm_length_2, base_distance = k.arm_length_1, k.arm_length_2, k.base_distance
+        offset_a1, offset_a2 = k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            arm_length_1 * cos(a1) - 0.5 * base_distance,
+            arm_length_1 * sin(a1),
+            0.0,
+            x,
+            y,
+            0.0,
+            0.5 * base_distance + arm_length_2 * cos(a2),
+            arm_length_2 * sin(a2),
+            0.0,
+            -0.5 * base_distance,
+            0.0,
+            0.0,
+            -0.5 * base_distance - arm_length_1 * sin(a1),
+            arm_length_1 * cos(a1),
+            0.0,
+            0.5 * base_distance,
+            0.0,
+            0.0,
+            0.5 * base_distance - arm_length_2 * sin(a2),
+            arm_length_2 * cos(a2),
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -65,7 +65,7 @@ class Gantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry2"
-    KEY = "gantry2 3c6edd1d7118e93d"
+    KEY = "gantry2 8960c7905cca5734"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -198,6 +198,15 @@ class Gantry2(OffsetKinematics):
         if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0), (0.0, 1.0))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y = axes
+        speed_x, speed_y = speeds
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_x, speed_y, axis_x, axis_y):
+            return Status.BAD_INPUT
+        return (0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

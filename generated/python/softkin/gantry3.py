@@ -65,7 +65,7 @@ class Gantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Gantry3"
-    KEY = "gantry3 9b8635e5f566e3b6"
+    KEY = "gantry3 a6783d087cda363d"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -208,6 +208,14 @@ class Gantry3(OffsetKinematics):
         if not reasonable(axis_x, axis_y, axis_z):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z = axes
+        speed_x, speed_y, speed_z = speeds
+        if not reasonable(speed_x, speed_y, speed_z, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

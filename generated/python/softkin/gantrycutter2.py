@@ -71,7 +71,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter2"
-    KEY = "gantrycutter2 5043f79761288349"
+    KEY = "gantrycutter2 2ccfc2ee9449b221"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -260,6 +260,14 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, direction_r),
         )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_r = axes
+        speed_x, speed_y, speed_r = speeds
+        if not reasonable(speed_r, speed_x, speed_y, axis_r, axis_x, axis_y):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

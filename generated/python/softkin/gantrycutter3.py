@@ -72,7 +72,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Kin_GantryCutter3"
-    KEY = "gantrycutter3 91ad0640bfc2fd45"
+    KEY = "gantrycutter3 90184d02de1f04c6"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Carriage along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Carriage along Y", multi_turn=False),
@@ -275,6 +275,14 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, direction_r),
         )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_r = axes
+        speed_x, speed_y, speed_z, speed_r = speeds
+        if not reasonable(speed_r, speed_x, speed_y, speed_z, axis_r, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
     def _image(self) -> Image | Status:
         """The orientations of the flange."""

@@ -83,7 +83,7 @@ class HeadHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadHead_CB"
-    KEY = "headhead_cb 945aa2d28ffeb377"
+    KEY = "headhead_cb f4a2ede2a8d7728b"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -410,6 +410,130 @@ class HeadHeadCB(Mechanism):
             (0.0, 0.0, 0.0, 0.0, -sin_c),
             (0.0, 0.0, 0.0, 0.0, cos_c),
             (0.0, 0.0, 0.0, 1.0, 0.0),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self._constants
+        fork_offset, head_offset, offset_b, offset_c = k.fork_offset, k.head_offset, k.offset_b, k.offset_c
+        offset_x, offset_y, offset_z, pivot_length = k.offset_x, k.offset_y, k.offset_z, k.pivot_length
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        b = DEGREE * (axis_b - offset_b)
+        cos_b = cos(b)
+        sin_b = sin(b)
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_c * cos_b + rate_of_cos_b * sin_c
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = rate_of_sin_b * sin_c + rate_of_sin_c * sin_b
+        rate_of_y = rate_of_y_at_b + head_offset * rate_of_r21_at_b - pivot_length * rate_of_r23_at_b
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_x_at_b = speed_x + fork_offset * rate_of_cos_c
+        rate_of_r11_at_b = rate_of_cos_c * cos_b + rate_of_cos_b * cos_c
+        rate_of_r13_at_b = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_x = rate_of_x_at_b + head_offset * rate_of_r11_at_b - pivot_length * rate_of_r13_at_b
+        joint_y = axis_y - offset_y
+        y_at_b = joint_y + fork_offset * sin_c
+        r21_at_b = cos_b * sin_c
+        r23_at_b = sin_b * sin_c
+        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
+        joint_x = axis_x - offset_x
+        x_at_b = joint_x + fork_offset * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        joint_z = axis_z - offset_z
+        z = joint_z - pivot_length * cos_b - head_offset * sin_b
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z - head_offset * rate_of_sin_b - pivot_length * rate_of_cos_b
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b * (rate_of_z_minus_speed_z * cos_c + rate_of_cos_c * z_minus_joint_z)
+            + (speed_y - rate_of_y) * speed_c,
+            (rate_of_sin_c * z_minus_joint_z + rate_of_z_minus_speed_z * sin_c) * speed_b
+            + (rate_of_x - speed_x) * speed_c,
+            speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_c
+                + (x_at_b - x) * rate_of_cos_c
+                + (y_at_b - y) * rate_of_sin_c
+                + (rate_of_y_at_b - rate_of_y) * sin_c
+            ),
+            speed_b
+            * (
+                rate_of_r21_at_b * cos_c
+                + r21_at_b * rate_of_cos_c
+                - r11_at_b * rate_of_sin_c
+                - rate_of_r11_at_b * sin_c
+            )
+            - rate_of_sin_b * speed_c,
+            2.0 * speed_b * (rate_of_cos_c * cos_c + rate_of_sin_c * sin_c),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self._constants
+        fork_offset, head_offset, offset_b, offset_c = k.fork_offset, k.head_offset, k.offset_b, k.offset_c
+        offset_x, offset_y, offset_z, pivot_length = k.offset_x, k.offset_y, k.offset_z, k.pivot_length
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        b = DEGREE * (axis_b - offset_b)
+        cos_b = cos(b)
+        sin_b = sin(b)
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_c * cos_b + rate_of_cos_b * sin_c
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = rate_of_sin_b * sin_c + rate_of_sin_c * sin_b
+        rate_of_y = rate_of_y_at_b + head_offset * rate_of_r21_at_b - pivot_length * rate_of_r23_at_b
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_x_at_b = speed_x + fork_offset * rate_of_cos_c
+        rate_of_r11_at_b = rate_of_cos_c * cos_b + rate_of_cos_b * cos_c
+        rate_of_r13_at_b = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_x = rate_of_x_at_b + head_offset * rate_of_r11_at_b - pivot_length * rate_of_r13_at_b
+        joint_y = axis_y - offset_y
+        y_at_b = joint_y + fork_offset * sin_c
+        r21_at_b = cos_b * sin_c
+        r23_at_b = sin_b * sin_c
+        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b
+        joint_x = axis_x - offset_x
+        x_at_b = joint_x + fork_offset * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b
+        joint_z = axis_z - offset_z
+        z = joint_z - pivot_length * cos_b - head_offset * sin_b
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z - head_offset * rate_of_sin_b - pivot_length * rate_of_cos_b
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b * (rate_of_z_minus_speed_z * cos_c + rate_of_cos_c * z_minus_joint_z)
+            + (speed_y - rate_of_y) * speed_c,
+            (rate_of_sin_c * z_minus_joint_z + rate_of_z_minus_speed_z * sin_c) * speed_b
+            + (rate_of_x - speed_x) * speed_c,
+            speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_c
+                + (x_at_b - x) * rate_of_cos_c
+                + (y_at_b - y) * rate_of_sin_c
+                + (rate_of_y_at_b - rate_of_y) * sin_c
+            ),
+            -rate_of_sin_c * speed_b,
+            rate_of_cos_c * speed_b,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -389,6 +389,18 @@ class Constants:
             if cos(DEGREE * max_angle_platform_joint) > -0.999999999999
             else -2.0
         )
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
+        divisor_1_2 = rod_length_1 if rod_length_1 > 1e-9 * machine_scale else 1.0
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
+        divisor_2_2 = rod_length_2 if rod_length_2 > 1e-9 * machine_scale else 1.0
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
+        divisor_3_2 = rod_length_3 if rod_length_3 > 1e-9 * machine_scale else 1.0
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
+        divisor_4_2 = rod_length_4 if rod_length_4 > 1e-9 * machine_scale else 1.0
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
+        divisor_5_2 = rod_length_5 if rod_length_5 > 1e-9 * machine_scale else 1.0
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
+        divisor_6_2 = rod_length_6 if rod_length_6 > 1e-9 * machine_scale else 1.0
         machine_scale_times_shortest_link = 1e-9 * machine_scale
         machine_scale_times_plane = 1e-6 * machine_scale
         rod_length_1_squared = rod_length_1 * rod_length_1
@@ -426,6 +438,12 @@ class Constants:
         half_by_rod_length_4 = 0.5 / rod_length_4
         half_by_rod_length_5 = 0.5 / rod_length_5
         half_by_rod_length_6 = 0.5 / rod_length_6
+        one_by_divisor_1_2 = 1.0 / divisor_1_2
+        one_by_divisor_2_2 = 1.0 / divisor_2_2
+        one_by_divisor_3_2 = 1.0 / divisor_3_2
+        one_by_divisor_4_2 = 1.0 / divisor_4_2
+        one_by_divisor_5_2 = 1.0 / divisor_5_2
+        one_by_divisor_6_2 = 1.0 / divisor_6_2
         self.rail_1_y, self.rail_1_z, self.rail_2_y, self.rail_2_z = rail_1_y, rail_1_z, rail_2_y, rail_2_z
         self.rail_3_y, self.rail_3_z, self.rail_4_y, self.rail_4_z = rail_3_y, rail_3_z, rail_4_y, rail_4_z
         self.rail_5_y, self.rail_5_z, self.rail_6_y, self.rail_6_z = rail_5_y, rail_5_z, rail_6_y, rail_6_z
@@ -492,7 +510,10 @@ class Constants:
         self.quotient_in_determinant, self.half_by_rod_length_1 = quotient_in_determinant, half_by_rod_length_1
         self.half_by_rod_length_2, self.half_by_rod_length_3 = half_by_rod_length_2, half_by_rod_length_3
         self.half_by_rod_length_4, self.half_by_rod_length_5 = half_by_rod_length_4, half_by_rod_length_5
-        self.half_by_rod_length_6 = half_by_rod_length_6
+        self.half_by_rod_length_6, self.one_by_divisor_1_2 = half_by_rod_length_6, one_by_divisor_1_2
+        self.one_by_divisor_2_2, self.one_by_divisor_3_2 = one_by_divisor_2_2, one_by_divisor_3_2
+        self.one_by_divisor_4_2, self.one_by_divisor_5_2 = one_by_divisor_4_2, one_by_divisor_5_2
+        self.one_by_divisor_6_2 = one_by_divisor_6_2
 
 
 class Hexaglide(IterativeForward):
@@ -504,7 +525,7 @@ class Hexaglide(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Hexaglide"
-    KEY = "hexaglide 03c9f746a143d056"
+    KEY = "hexaglide b5a980eb1a2aa8b3"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="X of carriage 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="X of carriage 2", multi_turn=False),
@@ -652,6 +673,26 @@ class Hexaglide(IterativeForward):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3", "a4", "a5", "a6")
+    LINES = (
+        (13, 0, "A1"),
+        (14, 2, "A2"),
+        (15, 4, "A3"),
+        (16, 6, "A4"),
+        (17, 8, "A5"),
+        (18, 10, "A6"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (6, 7, ""),
+        (8, 9, ""),
+        (10, 11, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     rail_1_y: float
@@ -2087,9 +2128,597 @@ class Hexaglide(IterativeForward):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self._constants
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, one_by_divisor_1_2 = k.offset_a5, k.offset_a6, k.one_by_divisor_1_2
+        one_by_divisor_2_2, one_by_divisor_3_2 = k.one_by_divisor_2_2, k.one_by_divisor_3_2
+        one_by_divisor_4_2, one_by_divisor_5_2 = k.one_by_divisor_4_2, k.one_by_divisor_5_2
+        one_by_divisor_6_2, one_by_platform_radius = k.one_by_divisor_6_2, k.one_by_platform_radius
+        platform_1_x, platform_1_y, platform_1_z = k.platform_1_x, k.platform_1_y, k.platform_1_z
+        platform_2_x, platform_2_y, platform_2_z = k.platform_2_x, k.platform_2_y, k.platform_2_z
+        platform_3_x, platform_3_y, platform_3_z = k.platform_3_x, k.platform_3_y, k.platform_3_z
+        platform_4_x, platform_4_y, platform_4_z = k.platform_4_x, k.platform_4_y, k.platform_4_z
+        platform_5_x, platform_5_y, platform_5_z = k.platform_5_x, k.platform_5_y, k.platform_5_z
+        platform_6_x, platform_6_y, platform_6_z, rail_1_y = k.platform_6_x, k.platform_6_y, k.platform_6_z, k.rail_1_y
+        rail_1_z, rail_2_y, rail_2_z, rail_3_y, rail_3_z = k.rail_1_z, k.rail_2_y, k.rail_2_z, k.rail_3_y, k.rail_3_z
+        rail_4_y, rail_4_z, rail_5_y, rail_5_z, rail_6_y = k.rail_4_y, k.rail_4_z, k.rail_5_y, k.rail_5_z, k.rail_6_y
+        rail_6_z, start_r11, start_r12, start_r13 = k.rail_6_z, k.start_r11, k.start_r12, k.start_r13
+        start_r21, start_r22, start_r23, start_r31 = k.start_r21, k.start_r22, k.start_r23, k.start_r31
+        start_r32, start_r33, start_x, start_y, start_z = k.start_r32, k.start_r33, k.start_x, k.start_y, k.start_z
+        if not reasonable(
+            speed_a1,
+            speed_a2,
+            speed_a3,
+            speed_a4,
+            speed_a5,
+            speed_a6,
+            axis_a1,
+            axis_a2,
+            axis_a3,
+            axis_a4,
+            axis_a5,
+            axis_a6,
+            start_x,
+            start_y,
+            start_z,
+        ):
+            return Status.BAD_INPUT
+        # pose of the platform, by Newton's method from the start
+        found = self._find_platform(
+            (
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                start_r11,
+                start_r12,
+                start_r13,
+                start_r21,
+                start_r22,
+                start_r23,
+                start_r31,
+                start_r32,
+                start_r33,
+                start_x,
+                start_y,
+                start_z,
+            )
+        )
+        if isinstance(found, Status):
+            return found
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            determinant,
+            *_,
+        ) = found
+        # nothing controls the plate
+        if not (abs(determinant) > 2e-12):
+            return Status.IMPOSSIBLE
+        a1 = axis_a1 - offset_a1
+        arm_1_x = found_r11 * platform_1_x + found_r12 * platform_1_y + found_r13 * platform_1_z
+        rod_1_x = arm_1_x + found_x - a1  # leg 1: vector from its joint on the base to its joint on the platform
+        along_1_x = one_by_divisor_1_2 * rod_1_x
+        arm_1_y = found_r21 * platform_1_x + found_r22 * platform_1_y + found_r23 * platform_1_z
+        rod_1_y = arm_1_y + found_y - rail_1_y
+        along_1_y = one_by_divisor_1_2 * rod_1_y
+        arm_1_z = found_r31 * platform_1_x + found_r32 * platform_1_y + found_r33 * platform_1_z
+        rod_1_z = arm_1_z + found_z - rail_1_z
+        along_1_z = one_by_divisor_1_2 * rod_1_z
+        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius
+        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
+        a2 = axis_a2 - offset_a2
+        arm_2_x = found_r11 * platform_2_x + found_r12 * platform_2_y + found_r13 * platform_2_z
+        rod_2_x = arm_2_x + found_x - a2  # leg 2: vector from its joint on the base to its joint on the platform
+        along_2_x = one_by_divisor_2_2 * rod_2_x
+        arm_2_y = found_r21 * platform_2_x + found_r22 * platform_2_y + found_r23 * platform_2_z
+        rod_2_y = arm_2_y + found_y - rail_2_y
+        along_2_y = one_by_divisor_2_2 * rod_2_y
+        arm_2_z = found_r31 * platform_2_x + found_r32 * platform_2_y + found_r33 * platform_2_z
+        rod_2_z = arm_2_z + found_z - rail_2_z
+        along_2_z = one_by_divisor_2_2 * rod_2_z
+        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius
+        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
+        a3 = axis_a3 - offset_a3
+        arm_3_x = found_r11 * platform_3_x + found_r12 * platform_3_y + found_r13 * platform_3_z
+        rod_3_x = arm_3_x + found_x - a3  # leg 3: vector from its joint on the base to its joint on the platform
+        along_3_x = one_by_divisor_3_2 * rod_3_x
+        arm_3_y = found_r21 * platform_3_x + found_r22 * platform_3_y + found_r23 * platform_3_z
+        rod_3_y = arm_3_y + found_y - rail_3_y
+        along_3_y = one_by_divisor_3_2 * rod_3_y
+        arm_3_z = found_r31 * platform_3_x + found_r32 * platform_3_y + found_r33 * platform_3_z
+        rod_3_z = arm_3_z + found_z - rail_3_z
+        along_3_z = one_by_divisor_3_2 * rod_3_z
+        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius
+        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
+        a4 = axis_a4 - offset_a4
+        arm_4_x = found_r11 * platform_4_x + found_r12 * platform_4_y + found_r13 * platform_4_z
+        rod_4_x = arm_4_x + found_x - a4  # leg 4: vector from its joint on the base to its joint on the platform
+        along_4_x = one_by_divisor_4_2 * rod_4_x
+        arm_4_y = found_r21 * platform_4_x + found_r22 * platform_4_y + found_r23 * platform_4_z
+        rod_4_y = arm_4_y + found_y - rail_4_y
+        along_4_y = one_by_divisor_4_2 * rod_4_y
+        arm_4_z = found_r31 * platform_4_x + found_r32 * platform_4_y + found_r33 * platform_4_z
+        rod_4_z = arm_4_z + found_z - rail_4_z
+        along_4_z = one_by_divisor_4_2 * rod_4_z
+        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius
+        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius
+        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius
+        a5 = axis_a5 - offset_a5
+        arm_5_x = found_r11 * platform_5_x + found_r12 * platform_5_y + found_r13 * platform_5_z
+        rod_5_x = arm_5_x + found_x - a5  # leg 5: vector from its joint on the base to its joint on the platform
+        along_5_x = one_by_divisor_5_2 * rod_5_x
+        arm_5_y = found_r21 * platform_5_x + found_r22 * platform_5_y + found_r23 * platform_5_z
+        rod_5_y = arm_5_y + found_y - rail_5_y
+        along_5_y = one_by_divisor_5_2 * rod_5_y
+        arm_5_z = found_r31 * platform_5_x + found_r32 * platform_5_y + found_r33 * platform_5_z
+        rod_5_z = arm_5_z + found_z - rail_5_z
+        along_5_z = one_by_divisor_5_2 * rod_5_z
+        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius
+        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius
+        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius
+        a6 = axis_a6 - offset_a6
+        arm_6_x = found_r11 * platform_6_x + found_r12 * platform_6_y + found_r13 * platform_6_z
+        rod_6_x = arm_6_x + found_x - a6  # leg 6: vector from its joint on the base to its joint on the platform
+        along_6_x = one_by_divisor_6_2 * rod_6_x
+        arm_6_y = found_r21 * platform_6_x + found_r22 * platform_6_y + found_r23 * platform_6_z
+        rod_6_y = arm_6_y + found_y - rail_6_y
+        along_6_y = one_by_divisor_6_2 * rod_6_y
+        arm_6_z = found_r31 * platform_6_x + found_r32 * platform_6_y + found_r33 * platform_6_z
+        rod_6_z = arm_6_z + found_z - rail_6_z
+        along_6_z = one_by_divisor_6_2 * rod_6_z
+        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius
+        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius
+        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius
+        # twist of the platform per velocity of each axis
+        _, column_1_vx, column_1_vy, column_1_vz, column_1_wx, column_1_wy, column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (along_1_x * speed_a1,),
+                (along_2_x * speed_a2,),
+                (along_3_x * speed_a3,),
+                (along_4_x * speed_a4,),
+                (along_5_x * speed_a5,),
+                (along_6_x * speed_a6,),
+            ),
+        )
+        product_in_rate_of_arm_1_x = (column_1_wy * found_r33 - column_1_wz * found_r23) * one_by_platform_radius
+        product_in_rate_of_arm_1_x_2 = (column_1_wy * found_r32 - column_1_wz * found_r22) * one_by_platform_radius
+        product_in_rate_of_arm_1_x_3 = (column_1_wy * found_r31 - column_1_wz * found_r21) * one_by_platform_radius
+        rate_of_arm_1_x = (
+            platform_1_x * product_in_rate_of_arm_1_x_3
+            + platform_1_y * product_in_rate_of_arm_1_x_2
+            + platform_1_z * product_in_rate_of_arm_1_x
+        )
+        speed_a1_minus_column_1_vx = speed_a1 - column_1_vx
+        rate_of_rod_1_x = rate_of_arm_1_x - speed_a1_minus_column_1_vx
+        rate_of_along_1_x = one_by_divisor_1_2 * rate_of_rod_1_x
+        product_in_rate_of_arm_1_y = (column_1_wz * found_r13 - column_1_wx * found_r33) * one_by_platform_radius
+        product_in_rate_of_arm_1_y_2 = (column_1_wz * found_r12 - column_1_wx * found_r32) * one_by_platform_radius
+        product_in_rate_of_arm_1_y_3 = (column_1_wz * found_r11 - column_1_wx * found_r31) * one_by_platform_radius
+        rate_of_arm_1_y = (
+            platform_1_x * product_in_rate_of_arm_1_y_3
+            + platform_1_y * product_in_rate_of_arm_1_y_2
+            + platform_1_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y
+        rate_of_along_1_y = one_by_divisor_1_2 * rate_of_rod_1_y
+        product_in_rate_of_arm_1_z = (column_1_wx * found_r23 - column_1_wy * found_r13) * one_by_platform_radius
+        product_in_rate_of_arm_1_z_2 = (column_1_wx * found_r22 - column_1_wy * found_r12) * one_by_platform_radius
+        product_in_rate_of_arm_1_z_3 = (column_1_wx * found_r21 - column_1_wy * found_r11) * one_by_platform_radius
+        rate_of_arm_1_z = (
+            platform_1_x * product_in_rate_of_arm_1_z_3
+            + platform_1_y * product_in_rate_of_arm_1_z_2
+            + platform_1_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_1_z = column_1_vz + rate_of_arm_1_z
+        rate_of_along_1_z = one_by_divisor_1_2 * rate_of_rod_1_z
+        rate_of_moment_1_x = (
+            along_1_z * rate_of_arm_1_y
+            + arm_1_y * rate_of_along_1_z
+            - along_1_y * rate_of_arm_1_z
+            - arm_1_z * rate_of_along_1_y
+        ) * one_by_platform_radius
+        rate_of_moment_1_y = (
+            along_1_x * rate_of_arm_1_z
+            + arm_1_z * rate_of_along_1_x
+            - along_1_z * rate_of_arm_1_x
+            - arm_1_x * rate_of_along_1_z
+        ) * one_by_platform_radius
+        rate_of_moment_1_z = (
+            along_1_y * rate_of_arm_1_x
+            + arm_1_x * rate_of_along_1_y
+            - along_1_x * rate_of_arm_1_y
+            - arm_1_y * rate_of_along_1_x
+        ) * one_by_platform_radius
+        rate_of_arm_2_x = (
+            platform_2_x * product_in_rate_of_arm_1_x_3
+            + platform_2_y * product_in_rate_of_arm_1_x_2
+            + platform_2_z * product_in_rate_of_arm_1_x
+        )
+        speed_a2_minus_column_1_vx = speed_a2 - column_1_vx
+        rate_of_rod_2_x = rate_of_arm_2_x - speed_a2_minus_column_1_vx
+        rate_of_along_2_x = one_by_divisor_2_2 * rate_of_rod_2_x
+        rate_of_arm_2_y = (
+            platform_2_x * product_in_rate_of_arm_1_y_3
+            + platform_2_y * product_in_rate_of_arm_1_y_2
+            + platform_2_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y
+        rate_of_along_2_y = one_by_divisor_2_2 * rate_of_rod_2_y
+        rate_of_arm_2_z = (
+            platform_2_x * product_in_rate_of_arm_1_z_3
+            + platform_2_y * product_in_rate_of_arm_1_z_2
+            + platform_2_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_2_z = column_1_vz + rate_of_arm_2_z
+        rate_of_along_2_z = one_by_divisor_2_2 * rate_of_rod_2_z
+        rate_of_moment_2_x = (
+            along_2_z * rate_of_arm_2_y
+            + arm_2_y * rate_of_along_2_z
+            - along_2_y * rate_of_arm_2_z
+            - arm_2_z * rate_of_along_2_y
+        ) * one_by_platform_radius
+        rate_of_moment_2_y = (
+            along_2_x * rate_of_arm_2_z
+            + arm_2_z * rate_of_along_2_x
+            - along_2_z * rate_of_arm_2_x
+            - arm_2_x * rate_of_along_2_z
+        ) * one_by_platform_radius
+        rate_of_moment_2_z = (
+            along_2_y * rate_of_arm_2_x
+            + arm_2_x * rate_of_along_2_y
+            - along_2_x * rate_of_arm_2_y
+            - arm_2_y * rate_of_along_2_x
+        ) * one_by_platform_radius
+        rate_of_arm_3_x = (
+            platform_3_x * product_in_rate_of_arm_1_x_3
+            + platform_3_y * product_in_rate_of_arm_1_x_2
+            + platform_3_z * product_in_rate_of_arm_1_x
+        )
+        speed_a3_minus_column_1_vx = speed_a3 - column_1_vx
+        rate_of_rod_3_x = rate_of_arm_3_x - speed_a3_minus_column_1_vx
+        rate_of_along_3_x = one_by_divisor_3_2 * rate_of_rod_3_x
+        rate_of_arm_3_y = (
+            platform_3_x * product_in_rate_of_arm_1_y_3
+            + platform_3_y * product_in_rate_of_arm_1_y_2
+            + platform_3_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y
+        rate_of_along_3_y = one_by_divisor_3_2 * rate_of_rod_3_y
+        rate_of_arm_3_z = (
+            platform_3_x * product_in_rate_of_arm_1_z_3
+            + platform_3_y * product_in_rate_of_arm_1_z_2
+            + platform_3_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_3_z = column_1_vz + rate_of_arm_3_z
+        rate_of_along_3_z = one_by_divisor_3_2 * rate_of_rod_3_z
+        rate_of_moment_3_x = (
+            along_3_z * rate_of_arm_3_y
+            + arm_3_y * rate_of_along_3_z
+            - along_3_y * rate_of_arm_3_z
+            - arm_3_z * rate_of_along_3_y
+        ) * one_by_platform_radius
+        rate_of_moment_3_y = (
+            along_3_x * rate_of_arm_3_z
+            + arm_3_z * rate_of_along_3_x
+            - along_3_z * rate_of_arm_3_x
+            - arm_3_x * rate_of_along_3_z
+        ) * one_by_platform_radius
+        rate_of_moment_3_z = (
+            along_3_y * rate_of_arm_3_x
+            + arm_3_x * rate_of_along_3_y
+            - along_3_x * rate_of_arm_3_y
+            - arm_3_y * rate_of_along_3_x
+        ) * one_by_platform_radius
+        rate_of_arm_4_x = (
+            platform_4_x * product_in_rate_of_arm_1_x_3
+            + platform_4_y * product_in_rate_of_arm_1_x_2
+            + platform_4_z * product_in_rate_of_arm_1_x
+        )
+        speed_a4_minus_column_1_vx = speed_a4 - column_1_vx
+        rate_of_rod_4_x = rate_of_arm_4_x - speed_a4_minus_column_1_vx
+        rate_of_along_4_x = one_by_divisor_4_2 * rate_of_rod_4_x
+        rate_of_arm_4_y = (
+            platform_4_x * product_in_rate_of_arm_1_y_3
+            + platform_4_y * product_in_rate_of_arm_1_y_2
+            + platform_4_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_4_y = column_1_vy + rate_of_arm_4_y
+        rate_of_along_4_y = one_by_divisor_4_2 * rate_of_rod_4_y
+        rate_of_arm_4_z = (
+            platform_4_x * product_in_rate_of_arm_1_z_3
+            + platform_4_y * product_in_rate_of_arm_1_z_2
+            + platform_4_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_4_z = column_1_vz + rate_of_arm_4_z
+        rate_of_along_4_z = one_by_divisor_4_2 * rate_of_rod_4_z
+        rate_of_moment_4_x = (
+            along_4_z * rate_of_arm_4_y
+            + arm_4_y * rate_of_along_4_z
+            - along_4_y * rate_of_arm_4_z
+            - arm_4_z * rate_of_along_4_y
+        ) * one_by_platform_radius
+        rate_of_moment_4_y = (
+            along_4_x * rate_of_arm_4_z
+            + arm_4_z * rate_of_along_4_x
+            - along_4_z * rate_of_arm_4_x
+            - arm_4_x * rate_of_along_4_z
+        ) * one_by_platform_radius
+        rate_of_moment_4_z = (
+            along_4_y * rate_of_arm_4_x
+            + arm_4_x * rate_of_along_4_y
+            - along_4_x * rate_of_arm_4_y
+            - arm_4_y * rate_of_along_4_x
+        ) * one_by_platform_radius
+        rate_of_arm_5_x = (
+            platform_5_x * product_in_rate_of_arm_1_x_3
+            + platform_5_y * product_in_rate_of_arm_1_x_2
+            + platform_5_z * product_in_rate_of_arm_1_x
+        )
+        speed_a5_minus_column_1_vx = speed_a5 - column_1_vx
+        rate_of_rod_5_x = rate_of_arm_5_x - speed_a5_minus_column_1_vx
+        rate_of_along_5_x = one_by_divisor_5_2 * rate_of_rod_5_x
+        rate_of_arm_5_y = (
+            platform_5_x * product_in_rate_of_arm_1_y_3
+            + platform_5_y * product_in_rate_of_arm_1_y_2
+            + platform_5_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_5_y = column_1_vy + rate_of_arm_5_y
+        rate_of_along_5_y = one_by_divisor_5_2 * rate_of_rod_5_y
+        rate_of_arm_5_z = (
+            platform_5_x * product_in_rate_of_arm_1_z_3
+            + platform_5_y * product_in_rate_of_arm_1_z_2
+            + platform_5_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_5_z = column_1_vz + rate_of_arm_5_z
+        rate_of_along_5_z = one_by_divisor_5_2 * rate_of_rod_5_z
+        rate_of_moment_5_x = (
+            along_5_z * rate_of_arm_5_y
+            + arm_5_y * rate_of_along_5_z
+            - along_5_y * rate_of_arm_5_z
+            - arm_5_z * rate_of_along_5_y
+        ) * one_by_platform_radius
+        rate_of_moment_5_y = (
+            along_5_x * rate_of_arm_5_z
+            + arm_5_z * rate_of_along_5_x
+            - along_5_z * rate_of_arm_5_x
+            - arm_5_x * rate_of_along_5_z
+        ) * one_by_platform_radius
+        rate_of_moment_5_z = (
+            along_5_y * rate_of_arm_5_x
+            + arm_5_x * rate_of_along_5_y
+            - along_5_x * rate_of_arm_5_y
+            - arm_5_y * rate_of_along_5_x
+        ) * one_by_platform_radius
+        rate_of_arm_6_x = (
+            platform_6_x * product_in_rate_of_arm_1_x_3
+            + platform_6_y * product_in_rate_of_arm_1_x_2
+            + platform_6_z * product_in_rate_of_arm_1_x
+        )
+        speed_a6_minus_column_1_vx = speed_a6 - column_1_vx
+        rate_of_rod_6_x = rate_of_arm_6_x - speed_a6_minus_column_1_vx
+        rate_of_along_6_x = one_by_divisor_6_2 * rate_of_rod_6_x
+        rate_of_arm_6_y = (
+            platform_6_x * product_in_rate_of_arm_1_y_3
+            + platform_6_y * product_in_rate_of_arm_1_y_2
+            + platform_6_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_6_y = column_1_vy + rate_of_arm_6_y
+        rate_of_along_6_y = one_by_divisor_6_2 * rate_of_rod_6_y
+        rate_of_arm_6_z = (
+            platform_6_x * product_in_rate_of_arm_1_z_3
+            + platform_6_y * product_in_rate_of_arm_1_z_2
+            + platform_6_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_6_z = column_1_vz + rate_of_arm_6_z
+        rate_of_along_6_z = one_by_divisor_6_2 * rate_of_rod_6_z
+        rate_of_moment_6_x = (
+            along_6_z * rate_of_arm_6_y
+            + arm_6_y * rate_of_along_6_z
+            - along_6_y * rate_of_arm_6_z
+            - arm_6_z * rate_of_along_6_y
+        ) * one_by_platform_radius
+        rate_of_moment_6_y = (
+            along_6_x * rate_of_arm_6_z
+            + arm_6_z * rate_of_along_6_x
+            - along_6_z * rate_of_arm_6_x
+            - arm_6_x * rate_of_along_6_z
+        ) * one_by_platform_radius
+        rate_of_moment_6_z = (
+            along_6_y * rate_of_arm_6_x
+            + arm_6_x * rate_of_along_6_y
+            - along_6_x * rate_of_arm_6_y
+            - arm_6_y * rate_of_along_6_x
+        ) * one_by_platform_radius
+        (
+            _,
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            rate_of_column_1_wx,
+            rate_of_column_1_wy,
+            rate_of_column_1_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (
+                    rate_of_along_1_x * speed_a1_minus_column_1_vx
+                    - column_1_vy * rate_of_along_1_y
+                    - column_1_vz * rate_of_along_1_z
+                    - column_1_wx * rate_of_moment_1_x
+                    - column_1_wy * rate_of_moment_1_y
+                    - column_1_wz * rate_of_moment_1_z,
+                ),
+                (
+                    rate_of_along_2_x * speed_a2_minus_column_1_vx
+                    - column_1_vy * rate_of_along_2_y
+                    - column_1_vz * rate_of_along_2_z
+                    - column_1_wx * rate_of_moment_2_x
+                    - column_1_wy * rate_of_moment_2_y
+                    - column_1_wz * rate_of_moment_2_z,
+                ),
+                (
+                    rate_of_along_3_x * speed_a3_minus_column_1_vx
+                    - column_1_vy * rate_of_along_3_y
+                    - column_1_vz * rate_of_along_3_z
+                    - column_1_wx * rate_of_moment_3_x
+                    - column_1_wy * rate_of_moment_3_y
+                    - column_1_wz * rate_of_moment_3_z,
+                ),
+                (
+                    rate_of_along_4_x * speed_a4_minus_column_1_vx
+                    - column_1_vy * rate_of_along_4_y
+                    - column_1_vz * rate_of_along_4_z
+                    - column_1_wx * rate_of_moment_4_x
+                    - column_1_wy * rate_of_moment_4_y
+                    - column_1_wz * rate_of_moment_4_z,
+                ),
+                (
+                    rate_of_along_5_x * speed_a5_minus_column_1_vx
+                    - column_1_vy * rate_of_along_5_y
+                    - column_1_vz * rate_of_along_5_z
+                    - column_1_wx * rate_of_moment_5_x
+                    - column_1_wy * rate_of_moment_5_y
+                    - column_1_wz * rate_of_moment_5_z,
+                ),
+                (
+                    rate_of_along_6_x * speed_a6_minus_column_1_vx
+                    - column_1_vy * rate_of_along_6_y
+                    - column_1_vz * rate_of_along_6_z
+                    - column_1_wx * rate_of_moment_6_x
+                    - column_1_wy * rate_of_moment_6_y
+                    - column_1_wz * rate_of_moment_6_z,
+                ),
+            ),
+        )
+        return (
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            one_by_platform_radius * rate_of_column_1_wx,
+            one_by_platform_radius * rate_of_column_1_wy,
+            one_by_platform_radius * rate_of_column_1_wz,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        k = self._constants
+        offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
+        offset_a5, offset_a6, platform_1_x, platform_1_y = k.offset_a5, k.offset_a6, k.platform_1_x, k.platform_1_y
+        platform_1_z, platform_2_x, platform_2_y = k.platform_1_z, k.platform_2_x, k.platform_2_y
+        platform_2_z, platform_3_x, platform_3_y = k.platform_2_z, k.platform_3_x, k.platform_3_y
+        platform_3_z, platform_4_x, platform_4_y = k.platform_3_z, k.platform_4_x, k.platform_4_y
+        platform_4_z, platform_5_x, platform_5_y = k.platform_4_z, k.platform_5_x, k.platform_5_y
+        platform_5_z, platform_6_x, platform_6_y = k.platform_5_z, k.platform_6_x, k.platform_6_y
+        platform_6_z, rail_1_y, rail_1_z, rail_2_y = k.platform_6_z, k.rail_1_y, k.rail_1_z, k.rail_2_y
+        rail_2_z, rail_3_y, rail_3_z, rail_4_y, rail_4_z = k.rail_2_z, k.rail_3_y, k.rail_3_z, k.rail_4_y, k.rail_4_z
+        rail_5_y, rail_5_z, rail_6_y, rail_6_z = k.rail_5_y, k.rail_5_z, k.rail_6_y, k.rail_6_z
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        a4 = axis_a4 - offset_a4
+        a5 = axis_a5 - offset_a5
+        a6 = axis_a6 - offset_a6
+        return (
+            a1,
+            rail_1_y,
+            rail_1_z,
+            x + platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13,
+            y + platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23,
+            z + platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33,
+            a2,
+            rail_2_y,
+            rail_2_z,
+            x + platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13,
+            y + platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23,
+            z + platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33,
+            a3,
+            rail_3_y,
+            rail_3_z,
+            x + platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13,
+            y + platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23,
+            z + platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33,
+            a4,
+            rail_4_y,
+            rail_4_z,
+            x + platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13,
+            y + platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23,
+            z + platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33,
+            a5,
+            rail_5_y,
+            rail_5_z,
+            x + platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13,
+            y + platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23,
+            z + platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33,
+            a6,
+            rail_6_y,
+            rail_6_z,
+            x + platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13,
+            y + platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23,
+            z + platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            rail_1_y,
+            rail_1_z,
+            0.0,
+            rail_2_y,
+            rail_2_z,
+            0.0,
+            rail_3_y,
+            rail_3_z,
+            0.0,
+            rail_4_y,
+            rail_4_z,
+            0.0,
+            rail_5_y,
+            rail_5_z,
+            0.0,
+            rail_6_y,
+            rail_6_z,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

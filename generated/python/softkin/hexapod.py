@@ -373,7 +373,7 @@ class Hexapod(IterativeForward):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Hexapod"
-    KEY = "hexapod a377a67679df05c5"
+    KEY = "hexapod 00ffed1d774cedee"
     AXES = (
         Axis(name="L1", kind="linear", unit="u", meaning="Length of leg 1, between its joints", multi_turn=False),
         Axis(name="L2", kind="linear", unit="u", meaning="Length of leg 2, between its joints", multi_turn=False),
@@ -515,6 +515,20 @@ class Hexapod(IterativeForward):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("l1", "l2", "l3", "l4", "l5", "l6")
+    LINES = (
+        (0, 1, "L1"),
+        (2, 3, "L2"),
+        (4, 5, "L3"),
+        (6, 7, "L4"),
+        (8, 9, "L5"),
+        (10, 11, "L6"),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
 
     base_1_x: float
@@ -1790,9 +1804,586 @@ class Hexapod(IterativeForward):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        speed_l1, speed_l2, speed_l3, speed_l4, speed_l5, speed_l6 = speeds
+        k = self._constants
+        base_1_x, base_1_y, base_1_z, base_2_x, base_2_y = k.base_1_x, k.base_1_y, k.base_1_z, k.base_2_x, k.base_2_y
+        base_2_z, base_3_x, base_3_y, base_3_z, base_4_x = k.base_2_z, k.base_3_x, k.base_3_y, k.base_3_z, k.base_4_x
+        base_4_y, base_4_z, base_5_x, base_5_y, base_5_z = k.base_4_y, k.base_4_z, k.base_5_x, k.base_5_y, k.base_5_z
+        base_6_x, base_6_y, base_6_z = k.base_6_x, k.base_6_y, k.base_6_z
+        machine_scale_times_shortest_link, offset_l1 = k.machine_scale_times_shortest_link, k.offset_l1
+        offset_l2, offset_l3, offset_l4, offset_l5 = k.offset_l2, k.offset_l3, k.offset_l4, k.offset_l5
+        offset_l6, one_by_platform_radius, platform_1_x = k.offset_l6, k.one_by_platform_radius, k.platform_1_x
+        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
+        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
+        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
+        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
+        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
+        platform_6_y, platform_6_z, start_r11, start_r12 = k.platform_6_y, k.platform_6_z, k.start_r11, k.start_r12
+        start_r13, start_r21, start_r22, start_r23 = k.start_r13, k.start_r21, k.start_r22, k.start_r23
+        start_r31, start_r32, start_r33, start_x, start_y = k.start_r31, k.start_r32, k.start_r33, k.start_x, k.start_y
+        start_z = k.start_z
+        if not reasonable(
+            speed_l1,
+            speed_l2,
+            speed_l3,
+            speed_l4,
+            speed_l5,
+            speed_l6,
+            axis_l1,
+            axis_l2,
+            axis_l3,
+            axis_l4,
+            axis_l5,
+            axis_l6,
+            start_x,
+            start_y,
+            start_z,
+        ):
+            return Status.BAD_INPUT
+        # pose of the platform, by Newton's method from the start
+        found = self._find_platform(
+            (
+                axis_l1,
+                axis_l2,
+                axis_l3,
+                axis_l4,
+                axis_l5,
+                axis_l6,
+                start_r11,
+                start_r12,
+                start_r13,
+                start_r21,
+                start_r22,
+                start_r23,
+                start_r31,
+                start_r32,
+                start_r33,
+                start_x,
+                start_y,
+                start_z,
+            )
+        )
+        if isinstance(found, Status):
+            return found
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            determinant,
+            *_,
+        ) = found
+        # nothing controls the plate
+        if not (abs(determinant) > 2e-12):
+            return Status.IMPOSSIBLE
+        arm_1_x = found_r11 * platform_1_x + found_r12 * platform_1_y + found_r13 * platform_1_z
+        # leg 1: vector from its joint on the base to its joint on the platform
+        span_1_x = arm_1_x + found_x - base_1_x
+        l1 = axis_l1 - offset_l1
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
+        one_by_l1 = 1.0 / divisor_1
+        along_1_x = one_by_l1 * span_1_x
+        arm_1_y = found_r21 * platform_1_x + found_r22 * platform_1_y + found_r23 * platform_1_z
+        span_1_y = arm_1_y + found_y - base_1_y
+        along_1_y = one_by_l1 * span_1_y
+        arm_1_z = found_r31 * platform_1_x + found_r32 * platform_1_y + found_r33 * platform_1_z
+        span_1_z = arm_1_z + found_z - base_1_z
+        along_1_z = one_by_l1 * span_1_z
+        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * one_by_platform_radius
+        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * one_by_platform_radius
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
+        arm_2_x = found_r11 * platform_2_x + found_r12 * platform_2_y + found_r13 * platform_2_z
+        # leg 2: vector from its joint on the base to its joint on the platform
+        span_2_x = arm_2_x + found_x - base_2_x
+        l2 = axis_l2 - offset_l2
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
+        one_by_l2 = 1.0 / divisor_2
+        along_2_x = one_by_l2 * span_2_x
+        arm_2_y = found_r21 * platform_2_x + found_r22 * platform_2_y + found_r23 * platform_2_z
+        span_2_y = arm_2_y + found_y - base_2_y
+        along_2_y = one_by_l2 * span_2_y
+        arm_2_z = found_r31 * platform_2_x + found_r32 * platform_2_y + found_r33 * platform_2_z
+        span_2_z = arm_2_z + found_z - base_2_z
+        along_2_z = one_by_l2 * span_2_z
+        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * one_by_platform_radius
+        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * one_by_platform_radius
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
+        arm_3_x = found_r11 * platform_3_x + found_r12 * platform_3_y + found_r13 * platform_3_z
+        # leg 3: vector from its joint on the base to its joint on the platform
+        span_3_x = arm_3_x + found_x - base_3_x
+        l3 = axis_l3 - offset_l3
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
+        one_by_l3 = 1.0 / divisor_3
+        along_3_x = one_by_l3 * span_3_x
+        arm_3_y = found_r21 * platform_3_x + found_r22 * platform_3_y + found_r23 * platform_3_z
+        span_3_y = arm_3_y + found_y - base_3_y
+        along_3_y = one_by_l3 * span_3_y
+        arm_3_z = found_r31 * platform_3_x + found_r32 * platform_3_y + found_r33 * platform_3_z
+        span_3_z = arm_3_z + found_z - base_3_z
+        along_3_z = one_by_l3 * span_3_z
+        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * one_by_platform_radius
+        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * one_by_platform_radius
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
+        arm_4_x = found_r11 * platform_4_x + found_r12 * platform_4_y + found_r13 * platform_4_z
+        # leg 4: vector from its joint on the base to its joint on the platform
+        span_4_x = arm_4_x + found_x - base_4_x
+        l4 = axis_l4 - offset_l4
+        # leg 4 as a line: unit vector, and its moment about the platform's origin
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
+        one_by_l4 = 1.0 / divisor_4
+        along_4_x = one_by_l4 * span_4_x
+        arm_4_y = found_r21 * platform_4_x + found_r22 * platform_4_y + found_r23 * platform_4_z
+        span_4_y = arm_4_y + found_y - base_4_y
+        along_4_y = one_by_l4 * span_4_y
+        arm_4_z = found_r31 * platform_4_x + found_r32 * platform_4_y + found_r33 * platform_4_z
+        span_4_z = arm_4_z + found_z - base_4_z
+        along_4_z = one_by_l4 * span_4_z
+        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * one_by_platform_radius
+        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * one_by_platform_radius
+        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * one_by_platform_radius
+        arm_5_x = found_r11 * platform_5_x + found_r12 * platform_5_y + found_r13 * platform_5_z
+        # leg 5: vector from its joint on the base to its joint on the platform
+        span_5_x = arm_5_x + found_x - base_5_x
+        l5 = axis_l5 - offset_l5
+        # leg 5 as a line: unit vector, and its moment about the platform's origin
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
+        one_by_l5 = 1.0 / divisor_5
+        along_5_x = one_by_l5 * span_5_x
+        arm_5_y = found_r21 * platform_5_x + found_r22 * platform_5_y + found_r23 * platform_5_z
+        span_5_y = arm_5_y + found_y - base_5_y
+        along_5_y = one_by_l5 * span_5_y
+        arm_5_z = found_r31 * platform_5_x + found_r32 * platform_5_y + found_r33 * platform_5_z
+        span_5_z = arm_5_z + found_z - base_5_z
+        along_5_z = one_by_l5 * span_5_z
+        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * one_by_platform_radius
+        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * one_by_platform_radius
+        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * one_by_platform_radius
+        arm_6_x = found_r11 * platform_6_x + found_r12 * platform_6_y + found_r13 * platform_6_z
+        # leg 6: vector from its joint on the base to its joint on the platform
+        span_6_x = arm_6_x + found_x - base_6_x
+        l6 = axis_l6 - offset_l6
+        # leg 6 as a line: unit vector, and its moment about the platform's origin
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
+        one_by_l6 = 1.0 / divisor_6
+        along_6_x = one_by_l6 * span_6_x
+        arm_6_y = found_r21 * platform_6_x + found_r22 * platform_6_y + found_r23 * platform_6_z
+        span_6_y = arm_6_y + found_y - base_6_y
+        along_6_y = one_by_l6 * span_6_y
+        arm_6_z = found_r31 * platform_6_x + found_r32 * platform_6_y + found_r33 * platform_6_z
+        span_6_z = arm_6_z + found_z - base_6_z
+        along_6_z = one_by_l6 * span_6_z
+        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * one_by_platform_radius
+        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * one_by_platform_radius
+        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * one_by_platform_radius
+        # twist of the platform per velocity of each axis
+        _, column_1_vx, column_1_vy, column_1_vz, column_1_wx, column_1_wy, column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            ((speed_l1,), (speed_l2,), (speed_l3,), (speed_l4,), (speed_l5,), (speed_l6,)),
+        )
+        product_in_rate_of_arm_1_x = (column_1_wy * found_r33 - column_1_wz * found_r23) * one_by_platform_radius
+        product_in_rate_of_arm_1_x_2 = (column_1_wy * found_r32 - column_1_wz * found_r22) * one_by_platform_radius
+        product_in_rate_of_arm_1_x_3 = (column_1_wy * found_r31 - column_1_wz * found_r21) * one_by_platform_radius
+        rate_of_arm_1_x = (
+            platform_1_x * product_in_rate_of_arm_1_x_3
+            + platform_1_y * product_in_rate_of_arm_1_x_2
+            + platform_1_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_1_x = column_1_vx + rate_of_arm_1_x
+        speed_l1_times_one_by_l1 = one_by_l1 * speed_l1
+        rate_of_along_1_x = one_by_l1 * (rate_of_span_1_x - span_1_x * speed_l1_times_one_by_l1)
+        product_in_rate_of_arm_1_y = (column_1_wz * found_r13 - column_1_wx * found_r33) * one_by_platform_radius
+        product_in_rate_of_arm_1_y_2 = (column_1_wz * found_r12 - column_1_wx * found_r32) * one_by_platform_radius
+        product_in_rate_of_arm_1_y_3 = (column_1_wz * found_r11 - column_1_wx * found_r31) * one_by_platform_radius
+        rate_of_arm_1_y = (
+            platform_1_x * product_in_rate_of_arm_1_y_3
+            + platform_1_y * product_in_rate_of_arm_1_y_2
+            + platform_1_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_1_y = column_1_vy + rate_of_arm_1_y
+        rate_of_along_1_y = one_by_l1 * (rate_of_span_1_y - span_1_y * speed_l1_times_one_by_l1)
+        product_in_rate_of_arm_1_z = (column_1_wx * found_r23 - column_1_wy * found_r13) * one_by_platform_radius
+        product_in_rate_of_arm_1_z_2 = (column_1_wx * found_r22 - column_1_wy * found_r12) * one_by_platform_radius
+        product_in_rate_of_arm_1_z_3 = (column_1_wx * found_r21 - column_1_wy * found_r11) * one_by_platform_radius
+        rate_of_arm_1_z = (
+            platform_1_x * product_in_rate_of_arm_1_z_3
+            + platform_1_y * product_in_rate_of_arm_1_z_2
+            + platform_1_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_1_z = column_1_vz + rate_of_arm_1_z
+        rate_of_along_1_z = one_by_l1 * (rate_of_span_1_z - span_1_z * speed_l1_times_one_by_l1)
+        rate_of_moment_1_x = (
+            along_1_z * rate_of_arm_1_y
+            + arm_1_y * rate_of_along_1_z
+            - along_1_y * rate_of_arm_1_z
+            - arm_1_z * rate_of_along_1_y
+        ) * one_by_platform_radius
+        rate_of_moment_1_y = (
+            along_1_x * rate_of_arm_1_z
+            + arm_1_z * rate_of_along_1_x
+            - along_1_z * rate_of_arm_1_x
+            - arm_1_x * rate_of_along_1_z
+        ) * one_by_platform_radius
+        rate_of_moment_1_z = (
+            along_1_y * rate_of_arm_1_x
+            + arm_1_x * rate_of_along_1_y
+            - along_1_x * rate_of_arm_1_y
+            - arm_1_y * rate_of_along_1_x
+        ) * one_by_platform_radius
+        rate_of_arm_2_x = (
+            platform_2_x * product_in_rate_of_arm_1_x_3
+            + platform_2_y * product_in_rate_of_arm_1_x_2
+            + platform_2_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_2_x = column_1_vx + rate_of_arm_2_x
+        speed_l2_times_one_by_l2 = one_by_l2 * speed_l2
+        rate_of_along_2_x = one_by_l2 * (rate_of_span_2_x - span_2_x * speed_l2_times_one_by_l2)
+        rate_of_arm_2_y = (
+            platform_2_x * product_in_rate_of_arm_1_y_3
+            + platform_2_y * product_in_rate_of_arm_1_y_2
+            + platform_2_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_2_y = column_1_vy + rate_of_arm_2_y
+        rate_of_along_2_y = one_by_l2 * (rate_of_span_2_y - span_2_y * speed_l2_times_one_by_l2)
+        rate_of_arm_2_z = (
+            platform_2_x * product_in_rate_of_arm_1_z_3
+            + platform_2_y * product_in_rate_of_arm_1_z_2
+            + platform_2_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_2_z = column_1_vz + rate_of_arm_2_z
+        rate_of_along_2_z = one_by_l2 * (rate_of_span_2_z - span_2_z * speed_l2_times_one_by_l2)
+        rate_of_moment_2_x = (
+            along_2_z * rate_of_arm_2_y
+            + arm_2_y * rate_of_along_2_z
+            - along_2_y * rate_of_arm_2_z
+            - arm_2_z * rate_of_along_2_y
+        ) * one_by_platform_radius
+        rate_of_moment_2_y = (
+            along_2_x * rate_of_arm_2_z
+            + arm_2_z * rate_of_along_2_x
+            - along_2_z * rate_of_arm_2_x
+            - arm_2_x * rate_of_along_2_z
+        ) * one_by_platform_radius
+        rate_of_moment_2_z = (
+            along_2_y * rate_of_arm_2_x
+            + arm_2_x * rate_of_along_2_y
+            - along_2_x * rate_of_arm_2_y
+            - arm_2_y * rate_of_along_2_x
+        ) * one_by_platform_radius
+        rate_of_arm_3_x = (
+            platform_3_x * product_in_rate_of_arm_1_x_3
+            + platform_3_y * product_in_rate_of_arm_1_x_2
+            + platform_3_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_3_x = column_1_vx + rate_of_arm_3_x
+        speed_l3_times_one_by_l3 = one_by_l3 * speed_l3
+        rate_of_along_3_x = one_by_l3 * (rate_of_span_3_x - span_3_x * speed_l3_times_one_by_l3)
+        rate_of_arm_3_y = (
+            platform_3_x * product_in_rate_of_arm_1_y_3
+            + platform_3_y * product_in_rate_of_arm_1_y_2
+            + platform_3_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_3_y = column_1_vy + rate_of_arm_3_y
+        rate_of_along_3_y = one_by_l3 * (rate_of_span_3_y - span_3_y * speed_l3_times_one_by_l3)
+        rate_of_arm_3_z = (
+            platform_3_x * product_in_rate_of_arm_1_z_3
+            + platform_3_y * product_in_rate_of_arm_1_z_2
+            + platform_3_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_3_z = column_1_vz + rate_of_arm_3_z
+        rate_of_along_3_z = one_by_l3 * (rate_of_span_3_z - span_3_z * speed_l3_times_one_by_l3)
+        rate_of_moment_3_x = (
+            along_3_z * rate_of_arm_3_y
+            + arm_3_y * rate_of_along_3_z
+            - along_3_y * rate_of_arm_3_z
+            - arm_3_z * rate_of_along_3_y
+        ) * one_by_platform_radius
+        rate_of_moment_3_y = (
+            along_3_x * rate_of_arm_3_z
+            + arm_3_z * rate_of_along_3_x
+            - along_3_z * rate_of_arm_3_x
+            - arm_3_x * rate_of_along_3_z
+        ) * one_by_platform_radius
+        rate_of_moment_3_z = (
+            along_3_y * rate_of_arm_3_x
+            + arm_3_x * rate_of_along_3_y
+            - along_3_x * rate_of_arm_3_y
+            - arm_3_y * rate_of_along_3_x
+        ) * one_by_platform_radius
+        rate_of_arm_4_x = (
+            platform_4_x * product_in_rate_of_arm_1_x_3
+            + platform_4_y * product_in_rate_of_arm_1_x_2
+            + platform_4_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_4_x = column_1_vx + rate_of_arm_4_x
+        speed_l4_times_one_by_l4 = one_by_l4 * speed_l4
+        rate_of_along_4_x = one_by_l4 * (rate_of_span_4_x - span_4_x * speed_l4_times_one_by_l4)
+        rate_of_arm_4_y = (
+            platform_4_x * product_in_rate_of_arm_1_y_3
+            + platform_4_y * product_in_rate_of_arm_1_y_2
+            + platform_4_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_4_y = column_1_vy + rate_of_arm_4_y
+        rate_of_along_4_y = one_by_l4 * (rate_of_span_4_y - span_4_y * speed_l4_times_one_by_l4)
+        rate_of_arm_4_z = (
+            platform_4_x * product_in_rate_of_arm_1_z_3
+            + platform_4_y * product_in_rate_of_arm_1_z_2
+            + platform_4_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_4_z = column_1_vz + rate_of_arm_4_z
+        rate_of_along_4_z = one_by_l4 * (rate_of_span_4_z - span_4_z * speed_l4_times_one_by_l4)
+        rate_of_moment_4_x = (
+            along_4_z * rate_of_arm_4_y
+            + arm_4_y * rate_of_along_4_z
+            - along_4_y * rate_of_arm_4_z
+            - arm_4_z * rate_of_along_4_y
+        ) * one_by_platform_radius
+        rate_of_moment_4_y = (
+            along_4_x * rate_of_arm_4_z
+            + arm_4_z * rate_of_along_4_x
+            - along_4_z * rate_of_arm_4_x
+            - arm_4_x * rate_of_along_4_z
+        ) * one_by_platform_radius
+        rate_of_moment_4_z = (
+            along_4_y * rate_of_arm_4_x
+            + arm_4_x * rate_of_along_4_y
+            - along_4_x * rate_of_arm_4_y
+            - arm_4_y * rate_of_along_4_x
+        ) * one_by_platform_radius
+        rate_of_arm_5_x = (
+            platform_5_x * product_in_rate_of_arm_1_x_3
+            + platform_5_y * product_in_rate_of_arm_1_x_2
+            + platform_5_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_5_x = column_1_vx + rate_of_arm_5_x
+        speed_l5_times_one_by_l5 = one_by_l5 * speed_l5
+        rate_of_along_5_x = one_by_l5 * (rate_of_span_5_x - span_5_x * speed_l5_times_one_by_l5)
+        rate_of_arm_5_y = (
+            platform_5_x * product_in_rate_of_arm_1_y_3
+            + platform_5_y * product_in_rate_of_arm_1_y_2
+            + platform_5_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_5_y = column_1_vy + rate_of_arm_5_y
+        rate_of_along_5_y = one_by_l5 * (rate_of_span_5_y - span_5_y * speed_l5_times_one_by_l5)
+        rate_of_arm_5_z = (
+            platform_5_x * product_in_rate_of_arm_1_z_3
+            + platform_5_y * product_in_rate_of_arm_1_z_2
+            + platform_5_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_5_z = column_1_vz + rate_of_arm_5_z
+        rate_of_along_5_z = one_by_l5 * (rate_of_span_5_z - span_5_z * speed_l5_times_one_by_l5)
+        rate_of_moment_5_x = (
+            along_5_z * rate_of_arm_5_y
+            + arm_5_y * rate_of_along_5_z
+            - along_5_y * rate_of_arm_5_z
+            - arm_5_z * rate_of_along_5_y
+        ) * one_by_platform_radius
+        rate_of_moment_5_y = (
+            along_5_x * rate_of_arm_5_z
+            + arm_5_z * rate_of_along_5_x
+            - along_5_z * rate_of_arm_5_x
+            - arm_5_x * rate_of_along_5_z
+        ) * one_by_platform_radius
+        rate_of_moment_5_z = (
+            along_5_y * rate_of_arm_5_x
+            + arm_5_x * rate_of_along_5_y
+            - along_5_x * rate_of_arm_5_y
+            - arm_5_y * rate_of_along_5_x
+        ) * one_by_platform_radius
+        rate_of_arm_6_x = (
+            platform_6_x * product_in_rate_of_arm_1_x_3
+            + platform_6_y * product_in_rate_of_arm_1_x_2
+            + platform_6_z * product_in_rate_of_arm_1_x
+        )
+        rate_of_span_6_x = column_1_vx + rate_of_arm_6_x
+        speed_l6_times_one_by_l6 = one_by_l6 * speed_l6
+        rate_of_along_6_x = one_by_l6 * (rate_of_span_6_x - span_6_x * speed_l6_times_one_by_l6)
+        rate_of_arm_6_y = (
+            platform_6_x * product_in_rate_of_arm_1_y_3
+            + platform_6_y * product_in_rate_of_arm_1_y_2
+            + platform_6_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_span_6_y = column_1_vy + rate_of_arm_6_y
+        rate_of_along_6_y = one_by_l6 * (rate_of_span_6_y - span_6_y * speed_l6_times_one_by_l6)
+        rate_of_arm_6_z = (
+            platform_6_x * product_in_rate_of_arm_1_z_3
+            + platform_6_y * product_in_rate_of_arm_1_z_2
+            + platform_6_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_span_6_z = column_1_vz + rate_of_arm_6_z
+        rate_of_along_6_z = one_by_l6 * (rate_of_span_6_z - span_6_z * speed_l6_times_one_by_l6)
+        rate_of_moment_6_x = (
+            along_6_z * rate_of_arm_6_y
+            + arm_6_y * rate_of_along_6_z
+            - along_6_y * rate_of_arm_6_z
+            - arm_6_z * rate_of_along_6_y
+        ) * one_by_platform_radius
+        rate_of_moment_6_y = (
+            along_6_x * rate_of_arm_6_z
+            + arm_6_z * rate_of_along_6_x
+            - along_6_z * rate_of_arm_6_x
+            - arm_6_x * rate_of_along_6_z
+        ) * one_by_platform_radius
+        rate_of_moment_6_z = (
+            along_6_y * rate_of_arm_6_x
+            + arm_6_x * rate_of_along_6_y
+            - along_6_x * rate_of_arm_6_y
+            - arm_6_y * rate_of_along_6_x
+        ) * one_by_platform_radius
+        (
+            _,
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            rate_of_column_1_wx,
+            rate_of_column_1_wy,
+            rate_of_column_1_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (
+                    -column_1_vx * rate_of_along_1_x
+                    - column_1_vy * rate_of_along_1_y
+                    - column_1_vz * rate_of_along_1_z
+                    - column_1_wx * rate_of_moment_1_x
+                    - column_1_wy * rate_of_moment_1_y
+                    - column_1_wz * rate_of_moment_1_z,
+                ),
+                (
+                    -column_1_vx * rate_of_along_2_x
+                    - column_1_vy * rate_of_along_2_y
+                    - column_1_vz * rate_of_along_2_z
+                    - column_1_wx * rate_of_moment_2_x
+                    - column_1_wy * rate_of_moment_2_y
+                    - column_1_wz * rate_of_moment_2_z,
+                ),
+                (
+                    -column_1_vx * rate_of_along_3_x
+                    - column_1_vy * rate_of_along_3_y
+                    - column_1_vz * rate_of_along_3_z
+                    - column_1_wx * rate_of_moment_3_x
+                    - column_1_wy * rate_of_moment_3_y
+                    - column_1_wz * rate_of_moment_3_z,
+                ),
+                (
+                    -column_1_vx * rate_of_along_4_x
+                    - column_1_vy * rate_of_along_4_y
+                    - column_1_vz * rate_of_along_4_z
+                    - column_1_wx * rate_of_moment_4_x
+                    - column_1_wy * rate_of_moment_4_y
+                    - column_1_wz * rate_of_moment_4_z,
+                ),
+                (
+                    -column_1_vx * rate_of_along_5_x
+                    - column_1_vy * rate_of_along_5_y
+                    - column_1_vz * rate_of_along_5_z
+                    - column_1_wx * rate_of_moment_5_x
+                    - column_1_wy * rate_of_moment_5_y
+                    - column_1_wz * rate_of_moment_5_z,
+                ),
+                (
+                    -column_1_vx * rate_of_along_6_x
+                    - column_1_vy * rate_of_along_6_y
+                    - column_1_vz * rate_of_along_6_z
+                    - column_1_wx * rate_of_moment_6_x
+                    - column_1_wy * rate_of_moment_6_y
+                    - column_1_wz * rate_of_moment_6_z,
+                ),
+            ),
+        )
+        return (
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            one_by_platform_radius * rate_of_column_1_wx,
+            one_by_platform_radius * rate_of_column_1_wy,
+            one_by_platform_radius * rate_of_column_1_wz,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        k = self._constants
+        base_1_x, base_1_y, base_1_z, base_2_x, base_2_y = k.base_1_x, k.base_1_y, k.base_1_z, k.base_2_x, k.base_2_y
+        base_2_z, base_3_x, base_3_y, base_3_z, base_4_x = k.base_2_z, k.base_3_x, k.base_3_y, k.base_3_z, k.base_4_x
+        base_4_y, base_4_z, base_5_x, base_5_y, base_5_z = k.base_4_y, k.base_4_z, k.base_5_x, k.base_5_y, k.base_5_z
+        base_6_x, base_6_y, base_6_z, platform_1_x = k.base_6_x, k.base_6_y, k.base_6_z, k.platform_1_x
+        platform_1_y, platform_1_z, platform_2_x = k.platform_1_y, k.platform_1_z, k.platform_2_x
+        platform_2_y, platform_2_z, platform_3_x = k.platform_2_y, k.platform_2_z, k.platform_3_x
+        platform_3_y, platform_3_z, platform_4_x = k.platform_3_y, k.platform_3_z, k.platform_4_x
+        platform_4_y, platform_4_z, platform_5_x = k.platform_4_y, k.platform_4_z, k.platform_5_x
+        platform_5_y, platform_5_z, platform_6_x = k.platform_5_y, k.platform_5_z, k.platform_6_x
+        platform_6_y, platform_6_z = k.platform_6_y, k.platform_6_z
+        return (
+            base_1_x,
+            base_1_y,
+            base_1_z,
+            x + platform_1_x * r11 + platform_1_y * r12 + platform_1_z * r13,
+            y + platform_1_x * r21 + platform_1_y * r22 + platform_1_z * r23,
+            z + platform_1_x * r31 + platform_1_y * r32 + platform_1_z * r33,
+            base_2_x,
+            base_2_y,
+            base_2_z,
+            x + platform_2_x * r11 + platform_2_y * r12 + platform_2_z * r13,
+            y + platform_2_x * r21 + platform_2_y * r22 + platform_2_z * r23,
+            z + platform_2_x * r31 + platform_2_y * r32 + platform_2_z * r33,
+            base_3_x,
+            base_3_y,
+            base_3_z,
+            x + platform_3_x * r11 + platform_3_y * r12 + platform_3_z * r13,
+            y + platform_3_x * r21 + platform_3_y * r22 + platform_3_z * r23,
+            z + platform_3_x * r31 + platform_3_y * r32 + platform_3_z * r33,
+            base_4_x,
+            base_4_y,
+            base_4_z,
+            x + platform_4_x * r11 + platform_4_y * r12 + platform_4_z * r13,
+            y + platform_4_x * r21 + platform_4_y * r22 + platform_4_z * r23,
+            z + platform_4_x * r31 + platform_4_y * r32 + platform_4_z * r33,
+            base_5_x,
+            base_5_y,
+            base_5_z,
+            x + platform_5_x * r11 + platform_5_y * r12 + platform_5_z * r13,
+            y + platform_5_x * r21 + platform_5_y * r22 + platform_5_z * r23,
+            z + platform_5_x * r31 + platform_5_y * r32 + platform_5_z * r33,
+            base_6_x,
+            base_6_y,
+            base_6_z,
+            x + platform_6_x * r11 + platform_6_y * r12 + platform_6_z * r13,
+            y + platform_6_x * r21 + platform_6_y * r22 + platform_6_z * r23,
+            z + platform_6_x * r31 + platform_6_y * r32 + platform_6_z * r33,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

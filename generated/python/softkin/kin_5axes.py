@@ -67,9 +67,11 @@ class Constants:
         self.lowest_b, self.highest_b, self.single_b, self.mid_b = machine._window("b")
         tool_length_times_tool_side = tool_side * tool_length
         one_by_tool_side = 1.0 / tool_side
+        twice_tool_side = 2.0 * tool_side
         self.tool_length, self.tool_side, self.offset_x, self.offset_y = tool_length, tool_side, offset_x, offset_y
         self.offset_z, self.offset_a, self.offset_b = offset_z, offset_a, offset_b
         self.tool_length_times_tool_side, self.one_by_tool_side = tool_length_times_tool_side, one_by_tool_side
+        self.twice_tool_side = twice_tool_side
 
 
 class Kin5Axes(Mechanism):
@@ -81,7 +83,7 @@ class Kin5Axes(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_5Axes"
-    KEY = "kin_5axes 6ed7d0e58bbb1a05"
+    KEY = "kin_5axes a6f9b998fbcf4560"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -408,6 +410,128 @@ class Kin5Axes(Mechanism):
             (0.0, 0.0, 0.0, 0.0, -sin_a_times_tool_side),
             (0.0, 0.0, 0.0, 0.0, cos_a_times_tool_side),
             (0.0, 0.0, 0.0, 1.0, 0.0),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        speed_x, speed_y, speed_z, speed_a, speed_b = speeds
+        k = self._constants
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        twice_tool_side = k.twice_tool_side
+        if not reasonable(speed_a, speed_b, speed_x, speed_y, speed_z, axis_a, axis_b, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        joint_y = axis_y - offset_y
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        sin_b_times_tool_side = tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = joint_y + r23_at_b * tool_length_times_tool_side
+        joint_x = axis_x - offset_x
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = joint_x + r13_at_b * tool_length_times_tool_side
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r31_at_b = -rate_of_sin_b * tool_side
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        joint_z = axis_z - offset_z
+        z = joint_z + tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z + rate_of_cos_b * tool_length_times_tool_side
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * tool_side
+        rate_of_y = speed_y + rate_of_r23_at_b * tool_length_times_tool_side
+        speed_y_minus_rate_of_y = speed_y - rate_of_y
+        rate_of_r13_at_b = tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = speed_x + rate_of_r13_at_b * tool_length_times_tool_side
+        rate_of_x_minus_speed_x = rate_of_x - speed_x
+        tool_side_times_speed_b = speed_b * tool_side
+        return (
+            speed_a * speed_y_minus_rate_of_y
+            + tool_side_times_speed_b * (rate_of_z_minus_speed_z * cos_a + rate_of_cos_a * z_minus_joint_z),
+            rate_of_x_minus_speed_x * speed_a
+            + (rate_of_sin_a * z_minus_joint_z + rate_of_z_minus_speed_z * sin_a) * tool_side_times_speed_b,
+            (
+                (joint_x - x) * rate_of_cos_a
+                + (joint_y - y) * rate_of_sin_a
+                + speed_y_minus_rate_of_y * sin_a
+                - rate_of_x_minus_speed_x * cos_a
+            )
+            * tool_side_times_speed_b,
+            rate_of_r31_at_b * speed_a
+            + tool_side_times_speed_b
+            * (
+                rate_of_r21_at_b * cos_a
+                + r21_at_b * rate_of_cos_a
+                - r11_at_b * rate_of_sin_a
+                - rate_of_r11_at_b * sin_a
+            ),
+            2.0 * rate_of_sin_a * tool_side_times_speed_b * sin_a + rate_of_cos_a * speed_b * twice_tool_side * cos_a,
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        speed_x, speed_y, speed_z, speed_a, speed_b = speeds
+        k = self._constants
+        offset_a, offset_b, offset_x, offset_y, offset_z = k.offset_a, k.offset_b, k.offset_x, k.offset_y, k.offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        if not reasonable(speed_a, speed_b, speed_x, speed_y, speed_z, axis_a, axis_b, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        joint_y = axis_y - offset_y
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        sin_b_times_tool_side = tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = joint_y + r23_at_b * tool_length_times_tool_side
+        joint_x = axis_x - offset_x
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = joint_x + r13_at_b * tool_length_times_tool_side
+        joint_z = axis_z - offset_z
+        cos_b = cos(b)
+        z = joint_z + tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_z = speed_z + rate_of_cos_b * tool_length_times_tool_side
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * tool_side
+        rate_of_y = speed_y + rate_of_r23_at_b * tool_length_times_tool_side
+        speed_y_minus_rate_of_y = speed_y - rate_of_y
+        rate_of_r13_at_b = tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = speed_x + rate_of_r13_at_b * tool_length_times_tool_side
+        rate_of_x_minus_speed_x = rate_of_x - speed_x
+        tool_side_times_speed_b = speed_b * tool_side
+        return (
+            speed_a * speed_y_minus_rate_of_y
+            + tool_side_times_speed_b * (rate_of_z_minus_speed_z * cos_a + rate_of_cos_a * z_minus_joint_z),
+            rate_of_x_minus_speed_x * speed_a
+            + (rate_of_sin_a * z_minus_joint_z + rate_of_z_minus_speed_z * sin_a) * tool_side_times_speed_b,
+            (
+                (joint_x - x) * rate_of_cos_a
+                + (joint_y - y) * rate_of_sin_a
+                + speed_y_minus_rate_of_y * sin_a
+                - rate_of_x_minus_speed_x * cos_a
+            )
+            * tool_side_times_speed_b,
+            -rate_of_sin_a * tool_side_times_speed_b,
+            rate_of_cos_a * tool_side_times_speed_b,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -129,8 +129,25 @@ class Constants:
         link_length_3_times_2_by_link_length_2 = 2.0 * link_length_3 / link_length_2
         product_in_slope_2_by_a1 = 2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one
         twice_link_length_5 = 2.0 * link_length_5
-        self.link_length_1, self.link_length_2, self.link_length_5 = link_length_1, link_length_2, link_length_5
-        self.swap_xy, self.offset_a1, self.offset_a2 = swap_xy, offset_a1, offset_a2
+        quotient_in_rate_of_slope_2_by_y = (
+            2.0 * link_length_1 * link_length_3 * link_length_3_by_link_length_2_plus_one / link_length_2
+        )
+        quotient_in_rate_of_slope_2_by_y_2 = 2.0 * link_length_3 * link_length_5 / link_length_2
+        quotient_in_rate_of_slope_2_by_y_3 = 2.0 * link_length_3 * link_length_3 / (link_length_2 * link_length_2)
+        link_length_1_squared_times_2 = 2.0 * link_length_1 * link_length_1
+        product_in_rate_of_slope_2_by_a1 = (
+            2.0
+            * link_length_1
+            * link_length_1
+            * link_length_3_by_link_length_2_plus_one
+            * link_length_3_by_link_length_2_plus_one
+        )
+        product_in_rate_of_slope_2_by_a1_2 = (
+            2.0 * link_length_1 * link_length_3_by_link_length_2_plus_one * link_length_5
+        )
+        link_length_5_squared_times_2 = 2.0 * link_length_5 * link_length_5
+        self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
+        self.link_length_5, self.swap_xy, self.offset_a1, self.offset_a2 = link_length_5, swap_xy, offset_a1, offset_a2
         self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
         self.product_in_normal_divisor = product_in_normal_divisor
         self.link_length_2_squared_times_rounding = link_length_2_squared_times_rounding
@@ -154,6 +171,13 @@ class Constants:
         self.twice_link_length_1, self.product_in_slope_2_by_x = twice_link_length_1, product_in_slope_2_by_x
         self.link_length_3_times_2_by_link_length_2 = link_length_3_times_2_by_link_length_2
         self.product_in_slope_2_by_a1, self.twice_link_length_5 = product_in_slope_2_by_a1, twice_link_length_5
+        self.quotient_in_rate_of_slope_2_by_y = quotient_in_rate_of_slope_2_by_y
+        self.quotient_in_rate_of_slope_2_by_y_2 = quotient_in_rate_of_slope_2_by_y_2
+        self.quotient_in_rate_of_slope_2_by_y_3 = quotient_in_rate_of_slope_2_by_y_3
+        self.link_length_1_squared_times_2 = link_length_1_squared_times_2
+        self.product_in_rate_of_slope_2_by_a1 = product_in_rate_of_slope_2_by_a1
+        self.product_in_rate_of_slope_2_by_a1_2 = product_in_rate_of_slope_2_by_a1_2
+        self.link_length_5_squared_times_2 = link_length_5_squared_times_2
 
 
 class KinType12XY(OffsetKinematics):
@@ -165,7 +189,7 @@ class KinType12XY(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "MC_KIN_TYPE_12_XY"
-    KEY = "mc_kin_type_12_xy 8613d87872cad463"
+    KEY = "mc_kin_type_12_xy e183bd4df5886db4"
     AXES = (
         Axis(
             name="A1",
@@ -219,6 +243,7 @@ class KinType12XY(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((4, 0, "A1"), (4, 0, "A1"), (4, 3, "A2"), (0, 1, ""), (0, 2, ""), (3, 2, ""), (1, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float
@@ -716,6 +741,242 @@ class KinType12XY(OffsetKinematics):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self._constants
+        assembly_sign, link_length_1 = k.assembly_sign, k.link_length_1
+        link_length_1_squared_times_2 = k.link_length_1_squared_times_2
+        link_length_2_by_link_length_3 = k.link_length_2_by_link_length_3
+        link_length_2_minus_radius_2 = k.link_length_2_minus_radius_2
+        link_length_2_plus_radius_2 = k.link_length_2_plus_radius_2
+        link_length_2_squared_times_rounding = k.link_length_2_squared_times_rounding
+        link_length_3_by_link_length_2 = k.link_length_3_by_link_length_2
+        link_length_3_times_2_by_link_length_2 = k.link_length_3_times_2_by_link_length_2
+        link_length_5, link_length_5_squared_times_2 = k.link_length_5, k.link_length_5_squared_times_2
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
+        product_in_normal_divisor = k.product_in_normal_divisor
+        product_in_rate_of_slope_2_by_a1 = k.product_in_rate_of_slope_2_by_a1
+        product_in_rate_of_slope_2_by_a1_2 = k.product_in_rate_of_slope_2_by_a1_2
+        product_in_slope_2_by_a1, product_in_slope_2_by_x = k.product_in_slope_2_by_a1, k.product_in_slope_2_by_x
+        quotient_in_rate_of_slope_2_by_y = k.quotient_in_rate_of_slope_2_by_y
+        quotient_in_rate_of_slope_2_by_y_2 = k.quotient_in_rate_of_slope_2_by_y_2
+        quotient_in_rate_of_slope_2_by_y_3 = k.quotient_in_rate_of_slope_2_by_y_3
+        sum_in_pivot_rear_x, swap_xy, twice_link_length_1 = k.sum_in_pivot_rear_x, k.swap_xy, k.twice_link_length_1
+        twice_link_length_5 = k.twice_link_length_5
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        pivot_upper_x = -link_length_1 * sin_a1  # rod upper: centre about which it swings
+        cos_a1 = cos(a1)
+        pivot_upper_y = -link_length_1 * cos_a1
+        if swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        cos_a2 = cos(a2)
+        cos_a2_times_link_length_5 = link_length_5 * cos_a2
+        # rod rear: centre about which it swings
+        pivot_rear_x = sum_in_pivot_rear_x * sin_a1 - cos_a2_times_link_length_5
+        sin_a2 = sin(a2)
+        link_length_5_times_sin_a2 = link_length_5 * sin_a2
+        pivot_rear_y = link_length_5_times_sin_a2 + sum_in_pivot_rear_x * cos_a1
+        centre_2_x = -(pivot_rear_y if swap_xy else pivot_rear_x) * link_length_2_by_link_length_3
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -(pivot_rear_x if swap_xy else pivot_rear_y) * link_length_2_by_link_length_3
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = normal_square if normal_square > product_in_normal_divisor else 1.0
+        between_centres = sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + link_length_2_minus_radius_2)
+            * (between_centres + link_length_2_plus_radius_2)
+            * (between_centres - link_length_2_minus_radius_2)
+            * one_by_normal_square
+        )
+        twice_link_length_1_times_sin_a1 = twice_link_length_1 * sin_a1
+        twice_link_length_1_times_cos_a1 = twice_link_length_1 * cos_a1
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_divisor + product_in_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        y_minus_pivot_upper_x = y - pivot_upper_x
+        x_minus_pivot_upper_y = x - pivot_upper_y
+        link_length_3_by_link_length_2_times_x = link_length_3_by_link_length_2 * x
+        sum_in_slope_2_by_y = cos_a2_times_link_length_5 - product_in_slope_2_by_x * sin_a1
+        sum_in_slope_2_by_x = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_x
+        sum_in_slope_2_by_y_2 = link_length_5_times_sin_a2 + product_in_slope_2_by_x * cos_a1
+        sum_in_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + sum_in_slope_2_by_y_2
+        link_length_3_by_link_length_2_times_y = link_length_3_by_link_length_2 * y
+        sum_in_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + sum_in_slope_2_by_y_2
+        sum_in_slope_2_by_y_4 = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_y
+        if swap_xy:
+            slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
+            slope_1_by_a1 = twice_link_length_1 * (y_minus_pivot_upper_x * cos_a1 - x_minus_pivot_upper_y * sin_a1)
+            slope_2_by_a1 = (
+                -sum_in_slope_2_by_y_4 * cos_a1 - sum_in_slope_2_by_x_2 * sin_a1
+            ) * product_in_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (sum_in_slope_2_by_x_2 * cos_a2 - sum_in_slope_2_by_y_4 * sin_a2)
+        else:
+            x_minus_pivot_upper_x = x - pivot_upper_x
+            y_minus_pivot_upper_y = y - pivot_upper_y
+            slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
+            slope_1_by_a1 = twice_link_length_1 * (x_minus_pivot_upper_x * cos_a1 - y_minus_pivot_upper_y * sin_a1)
+            slope_2_by_a1 = (-sum_in_slope_2_by_x * cos_a1 - sum_in_slope_2_by_y_3 * sin_a1) * product_in_slope_2_by_a1
+            slope_2_by_a2 = twice_link_length_5 * (sum_in_slope_2_by_y_3 * cos_a2 - sum_in_slope_2_by_x * sin_a2)
+        slope_2_by_x = (
+            -(-sum_in_slope_2_by_x_2 if swap_xy else sum_in_slope_2_by_x) * link_length_3_times_2_by_link_length_2
+        )
+        slope_2_by_y = (
+            -(sum_in_slope_2_by_y_4 if swap_xy else -sum_in_slope_2_by_y_3) * link_length_3_times_2_by_link_length_2
+        )
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
+        determinant_divisor = determinant if abs(determinant) > machine_scale_squared_times_free_angle else 1.0
+        one_by_determinant = 1.0 / determinant_divisor
+        slope_2_by_a2_times_speed_a2 = slope_2_by_a2 * speed_a2
+        velocity_y = (
+            (slope_1_by_a1 * slope_2_by_x - slope_1_by_x * slope_2_by_a1) * speed_a1
+            - slope_1_by_x * slope_2_by_a2_times_speed_a2
+        ) * one_by_determinant
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        twice_link_length_1_times_rate_of_cos_a1 = rate_of_cos_a1 * twice_link_length_1
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_link_length_1_times_rate_of_sin_a1 = rate_of_sin_a1 * twice_link_length_1
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        sum_in_rate_of_slope_2_by_y = (
+            quotient_in_rate_of_slope_2_by_y * rate_of_cos_a1 + quotient_in_rate_of_slope_2_by_y_2 * rate_of_sin_a2
+        )
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        sum_in_rate_of_slope_2_by_y_2 = (
+            quotient_in_rate_of_slope_2_by_y * rate_of_sin_a1 - quotient_in_rate_of_slope_2_by_y_2 * rate_of_cos_a2
+        )
+        product_in_rate_of_slope_2_by_y = quotient_in_rate_of_slope_2_by_y_3 * velocity_y
+        velocity_x = one_by_determinant * (
+            slope_1_by_y * slope_2_by_a2_times_speed_a2
+            + (slope_1_by_y * slope_2_by_a1 - slope_1_by_a1 * slope_2_by_y) * speed_a1
+        )
+        product_in_rate_of_slope_1_by_a1 = link_length_1_squared_times_2 * cos_a1
+        product_in_rate_of_slope_1_by_a1_2 = link_length_1_squared_times_2 * sin_a1
+        sum_in_rate_of_slope_2_by_a1_2 = velocity_x * sin_a1 - velocity_y * cos_a1
+        sum_in_rate_of_slope_2_by_a1 = velocity_y * sin_a1 - velocity_x * cos_a1
+        twice_velocity_x = 2.0 * velocity_x
+        product_in_rate_of_slope_2_by_x = quotient_in_rate_of_slope_2_by_y_3 * velocity_x
+        if swap_xy:
+            rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_y
+            rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y_2
+            rate_of_slope_1_by_a1 = (
+                (twice_link_length_1 * y_minus_pivot_upper_x - product_in_rate_of_slope_1_by_a1_2) * rate_of_cos_a1
+                + (product_in_rate_of_slope_1_by_a1 - twice_link_length_1 * x_minus_pivot_upper_y) * rate_of_sin_a1
+                - sum_in_rate_of_slope_2_by_a1_2 * twice_link_length_1
+            )
+            rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_x
+            rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y
+        else:
+            x_minus_pivot_upper_x = x - pivot_upper_x
+            y_minus_pivot_upper_y = y - pivot_upper_y
+            rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_y
+            rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y
+            rate_of_slope_1_by_a1 = (
+                (twice_link_length_1 * x_minus_pivot_upper_x - product_in_rate_of_slope_1_by_a1_2) * rate_of_cos_a1
+                + (product_in_rate_of_slope_1_by_a1 - twice_link_length_1 * y_minus_pivot_upper_y) * rate_of_sin_a1
+                - sum_in_rate_of_slope_2_by_a1 * twice_link_length_1
+            )
+            rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_x
+            rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y_2
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (
+            normal_square > product_in_normal_divisor
+            and height_square >= -link_length_2_squared_times_rounding
+            and abs(determinant) > machine_scale_squared_times_free_angle
+        ):
+            return Status.IMPOSSIBLE
+        product_in_rate_of_slope_2_by_a1_3 = product_in_rate_of_slope_2_by_a1 * cos_a1
+        product_in_rate_of_slope_2_by_a1_4 = product_in_rate_of_slope_2_by_a1 * sin_a1
+        sum_in_rate_of_slope_2_by_a1_4 = (
+            quotient_in_rate_of_slope_2_by_y * sum_in_rate_of_slope_2_by_a1
+            + (product_in_rate_of_slope_2_by_a1_4 + product_in_slope_2_by_a1 * sum_in_slope_2_by_x) * rate_of_cos_a1
+            + (product_in_slope_2_by_a1 * sum_in_slope_2_by_y_3 - product_in_rate_of_slope_2_by_a1_3) * rate_of_sin_a1
+        )
+        sum_in_rate_of_slope_2_by_a1_3 = (
+            quotient_in_rate_of_slope_2_by_y * sum_in_rate_of_slope_2_by_a1_2
+            + (product_in_rate_of_slope_2_by_a1_4 + product_in_slope_2_by_a1 * sum_in_slope_2_by_y_4) * rate_of_cos_a1
+            + (product_in_slope_2_by_a1 * sum_in_slope_2_by_x_2 - product_in_rate_of_slope_2_by_a1_3) * rate_of_sin_a1
+        )
+        rate_of_slope_2_by_a1 = (-sum_in_rate_of_slope_2_by_a1_3 if swap_xy else -sum_in_rate_of_slope_2_by_a1_4) + (
+            -rate_of_cos_a2 * cos_a1 - rate_of_sin_a2 * sin_a1
+        ) * product_in_rate_of_slope_2_by_a1_2
+        rate_of_determinant = (
+            rate_of_slope_1_by_x * slope_2_by_y
+            + rate_of_slope_2_by_y * slope_1_by_x
+            - rate_of_slope_1_by_y * slope_2_by_x
+            - rate_of_slope_2_by_x * slope_1_by_y
+        )
+        shared_product = one_by_determinant * (slope_2_by_a2_times_speed_a2 + slope_2_by_a1 * speed_a1)
+        product_in_rate_of_slope_2_by_a2 = link_length_5_squared_times_2 * cos_a2
+        product_in_rate_of_slope_2_by_a2_2 = link_length_5_squared_times_2 * sin_a2
+        sum_in_rate_of_slope_2_by_a2_2 = (
+            quotient_in_rate_of_slope_2_by_y_2 * (velocity_y * cos_a2 + velocity_x * sin_a2)
+            + (sum_in_slope_2_by_y_3 * twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2) * rate_of_cos_a2
+            + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_x * twice_link_length_5) * rate_of_sin_a2
+        )
+        sum_in_rate_of_slope_2_by_a2 = (
+            quotient_in_rate_of_slope_2_by_y_2 * (velocity_x * cos_a2 + velocity_y * sin_a2)
+            + (sum_in_slope_2_by_x_2 * twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2) * rate_of_cos_a2
+            + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_y_4 * twice_link_length_5) * rate_of_sin_a2
+        )
+        rate_of_slope_2_by_a2 = (
+            sum_in_rate_of_slope_2_by_a2 if swap_xy else sum_in_rate_of_slope_2_by_a2_2
+        ) + product_in_rate_of_slope_2_by_a1_2 * (rate_of_cos_a1 * cos_a2 + rate_of_sin_a1 * sin_a2)
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        return (
+            one_by_determinant
+            * (
+                slope_1_by_y * speed_a2_times_rate_of_slope_2_by_a2
+                + (
+                    rate_of_slope_2_by_a1 * slope_1_by_y
+                    - rate_of_slope_1_by_a1 * slope_2_by_y
+                    - rate_of_slope_2_by_y * slope_1_by_a1
+                )
+                * speed_a1
+            )
+            + rate_of_slope_1_by_y * shared_product
+            - one_by_determinant * rate_of_determinant * velocity_x,
+            (
+                (
+                    rate_of_slope_1_by_a1 * slope_2_by_x
+                    + rate_of_slope_2_by_x * slope_1_by_a1
+                    - rate_of_slope_2_by_a1 * slope_1_by_x
+                )
+                * speed_a1
+                - slope_1_by_x * speed_a2_times_rate_of_slope_2_by_a2
+            )
+            * one_by_determinant
+            - rate_of_slope_1_by_x * shared_product
+            - one_by_determinant * rate_of_determinant * velocity_y,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -932,6 +1193,41 @@ class KinType12XY(OffsetKinematics):
             + (product_in_branch_crank * sin_a1 - link_length_2 * span_rear_x) * sin_a2
         )
         return (branch_elbow, branch_crank)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        link_length_5, offset_a1, offset_a2, swap_xy = k.link_length_5, k.offset_a1, k.offset_a2, k.swap_xy
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            -link_length_1 * sin(a1),
+            -cos(a1) * link_length_1,
+            0.0,
+            (y if swap_xy else x),
+            (x if swap_xy else y),
+            0.0,
+            -(1.0 + link_length_3 / link_length_2) * link_length_1 * sin(a1)
+            - (y if swap_xy else x) * link_length_3 / link_length_2,
+            -(1.0 + link_length_3 / link_length_2) * cos(a1) * link_length_1
+            - (x if swap_xy else y) * link_length_3 / link_length_2,
+            0.0,
+            -cos(a2) * link_length_5,
+            link_length_5 * sin(a2),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            -cos(a1) * link_length_1,
+            link_length_1 * sin(a1),
+            0.0,
+            link_length_5 * sin(a2),
+            cos(a2) * link_length_5,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -73,7 +73,6 @@ class Constants:
         sin_nutation = sin(DEGREE * nutation)
         cos_nutation_squared = cos_nutation * cos_nutation
         cos_nutation_times_sin_nutation = cos_nutation * sin_nutation
-        shared_size = abs(cos_nutation_squared - 1.0)
         pivot_length_times_cos_nutation_squared = pivot_length * cos_nutation * cos_nutation
         one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0 * cos_nutation * cos_nutation
         product_in_joint_x = pivot_length * cos_nutation * sin_nutation
@@ -84,7 +83,7 @@ class Constants:
         self.offset_x, self.offset_y, self.offset_z, self.offset_c = offset_x, offset_y, offset_z, offset_c
         self.offset_b, self.cos_nutation, self.sin_nutation = offset_b, cos_nutation, sin_nutation
         self.cos_nutation_squared = cos_nutation_squared
-        self.cos_nutation_times_sin_nutation, self.shared_size = cos_nutation_times_sin_nutation, shared_size
+        self.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation
         self.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared
         self.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2
         self.product_in_joint_x = product_in_joint_x
@@ -103,7 +102,7 @@ class NutatingHeadCB(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_NutatingHead_CB"
-    KEY = "nutatinghead_cb 681f70785b60cbd4"
+    KEY = "nutatinghead_cb 16b20da1ddff4623"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -346,12 +345,9 @@ class NutatingHeadCB(Mechanism):
         pivot_length = k.pivot_length
         pivot_length_times_cos_nutation_squared = k.pivot_length_times_cos_nutation_squared
         pivot_length_times_sin_nutation, product_in_joint_x = k.pivot_length_times_sin_nutation, k.product_in_joint_x
-        shared_size, sin_nutation, single_b, single_c = k.shared_size, k.sin_nutation, k.single_b, k.single_c
+        sin_nutation, single_b, single_c = k.sin_nutation, k.single_b, k.single_c
         if not reasonable(x, y, z, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # b: its effective length is too short
-        if not (shared_size > 5e-10):
-            return Diagnosis(Status.UNREACHABLE, "B: its effective length is too short", 0.0)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0
@@ -550,6 +546,246 @@ class NutatingHeadCB(Mechanism):
             (0.0, 0.0, 0.0, 0.0, r13_at_b_turned),
             (0.0, 0.0, 0.0, 0.0, r23_at_b_turned),
             (0.0, 0.0, 0.0, 1.0, cos_nutation),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self._constants
+        cos_nutation, cos_nutation_squared, fork_offset = k.cos_nutation, k.cos_nutation_squared, k.fork_offset
+        head_offset, offset_b, offset_c, offset_x = k.head_offset, k.offset_b, k.offset_c, k.offset_x
+        offset_y, offset_z, pivot_length, sin_nutation = k.offset_y, k.offset_z, k.pivot_length, k.sin_nutation
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * sin_nutation
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * sin_nutation
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        r22_at_b_turned = cos_c * cos_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = (
+            rate_of_sin_c * cos_b
+            + r22_at_b_turned * rate_of_sin_b
+            + rate_of_cos_b * sin_c
+            + rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * cos_nutation - rate_of_r22_at_b * sin_nutation
+        rate_of_y = rate_of_y_at_b + head_offset * rate_of_r21_at_b - pivot_length * rate_of_r23_at_b_turned_2
+        rate_of_r31_at_b = -rate_of_sin_b * sin_nutation
+        r13_at_b_turned = -sin_c * sin_nutation
+        rate_of_x_at_b = speed_x + fork_offset * rate_of_cos_c
+        rate_of_r13_at_b_turned = -rate_of_sin_c * sin_nutation
+        r12_at_b_turned = -cos_nutation * sin_c
+        rate_of_r12_at_b_turned = -rate_of_sin_c * cos_nutation
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            + r12_at_b_turned * rate_of_sin_b
+            + rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + r12_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * cos_c
+            - rate_of_cos_c * sin_b
+        )
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * cos_nutation - rate_of_r12_at_b * sin_nutation
+        rate_of_x = rate_of_x_at_b + head_offset * rate_of_r11_at_b - pivot_length * rate_of_r13_at_b_turned_2
+        joint_y = axis_y - offset_y
+        y_at_b = joint_y + fork_offset * sin_c
+        r21_at_b = cos_b * sin_c + r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r23_at_b_turned_2 = r23_at_b_turned * cos_nutation - r22_at_b * sin_nutation
+        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b_turned_2
+        joint_x = axis_x - offset_x
+        x_at_b = joint_x + fork_offset * cos_c
+        r11_at_b = cos_b * cos_c + r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b - cos_c * sin_b
+        r13_at_b_turned_2 = r13_at_b_turned * cos_nutation - r12_at_b * sin_nutation
+        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b_turned_2
+        r12_at_b_turned_2 = r12_at_b * cos_nutation + r13_at_b_turned * sin_nutation
+        r22_at_b_turned_2 = r22_at_b * cos_nutation + r23_at_b_turned * sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * sin_nutation
+        rate_of_r32_at_b_turned = rate_of_r32_at_b * cos_nutation
+        rate_of_r12_at_b_turned_2 = rate_of_r12_at_b * cos_nutation + rate_of_r13_at_b_turned * sin_nutation
+        rate_of_r22_at_b_turned_2 = rate_of_r22_at_b * cos_nutation + rate_of_r23_at_b_turned * sin_nutation
+        joint_z = axis_z - offset_z
+        r31_at_b = -sin_b * sin_nutation
+        r32_at_b = -cos_b * sin_nutation
+        r33_at_b_turned = cos_nutation_squared - r32_at_b * sin_nutation
+        z = joint_z + head_offset * r31_at_b - pivot_length * r33_at_b_turned
+        z_minus_joint_z = z - joint_z
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * cos_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * sin_nutation
+        rate_of_z = speed_z + head_offset * rate_of_r31_at_b - pivot_length * rate_of_r33_at_b_turned
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b
+            * (
+                rate_of_y_at_b * cos_nutation
+                + r23_at_b_turned * rate_of_z_minus_speed_z
+                + rate_of_r23_at_b_turned * z_minus_joint_z
+            )
+            + speed_c * speed_y
+            - rate_of_y * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_x * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                -rate_of_x_at_b * cos_nutation
+                - r13_at_b_turned * rate_of_z_minus_speed_z
+                - rate_of_r13_at_b_turned * z_minus_joint_z
+            )
+            * speed_b
+            - speed_c * speed_x,
+            (
+                r13_at_b_turned * (rate_of_y - rate_of_y_at_b)
+                + (rate_of_x_at_b - rate_of_x) * r23_at_b_turned
+                + rate_of_r13_at_b_turned * (y - y_at_b)
+                + (x_at_b - x) * rate_of_r23_at_b_turned
+            )
+            * speed_b,
+            rate_of_r31_at_b * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                r11_at_b * rate_of_r13_at_b_turned
+                + r13_at_b_turned * rate_of_r11_at_b
+                + r21_at_b * rate_of_r23_at_b_turned
+                + r23_at_b_turned * rate_of_r21_at_b
+            )
+            * speed_b,
+            rate_of_r32_at_b_turned * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                r12_at_b_turned_2 * rate_of_r13_at_b_turned
+                + r13_at_b_turned * rate_of_r12_at_b_turned_2
+                + r22_at_b_turned_2 * rate_of_r23_at_b_turned
+                + r23_at_b_turned * rate_of_r22_at_b_turned_2
+            )
+            * speed_b,
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self._constants
+        cos_nutation, cos_nutation_squared, fork_offset = k.cos_nutation, k.cos_nutation_squared, k.fork_offset
+        head_offset, offset_b, offset_c, offset_x = k.head_offset, k.offset_b, k.offset_c, k.offset_x
+        offset_y, offset_z, pivot_length, sin_nutation = k.offset_y, k.offset_z, k.pivot_length, k.sin_nutation
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * sin_nutation
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * sin_nutation
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        r22_at_b_turned = cos_c * cos_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = (
+            rate_of_sin_c * cos_b
+            + r22_at_b_turned * rate_of_sin_b
+            + rate_of_cos_b * sin_c
+            + rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * cos_nutation - rate_of_r22_at_b * sin_nutation
+        rate_of_y = rate_of_y_at_b + head_offset * rate_of_r21_at_b - pivot_length * rate_of_r23_at_b_turned_2
+        r13_at_b_turned = -sin_c * sin_nutation
+        rate_of_x_at_b = speed_x + fork_offset * rate_of_cos_c
+        rate_of_r13_at_b_turned = -rate_of_sin_c * sin_nutation
+        r12_at_b_turned = -cos_nutation * sin_c
+        rate_of_r12_at_b_turned = -rate_of_sin_c * cos_nutation
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            + r12_at_b_turned * rate_of_sin_b
+            + rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + r12_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * cos_c
+            - rate_of_cos_c * sin_b
+        )
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * cos_nutation - rate_of_r12_at_b * sin_nutation
+        rate_of_x = rate_of_x_at_b + head_offset * rate_of_r11_at_b - pivot_length * rate_of_r13_at_b_turned_2
+        joint_y = axis_y - offset_y
+        y_at_b = joint_y + fork_offset * sin_c
+        r21_at_b = cos_b * sin_c + r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r23_at_b_turned_2 = r23_at_b_turned * cos_nutation - r22_at_b * sin_nutation
+        y = y_at_b + head_offset * r21_at_b - pivot_length * r23_at_b_turned_2
+        joint_x = axis_x - offset_x
+        x_at_b = joint_x + fork_offset * cos_c
+        r11_at_b = cos_b * cos_c + r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b - cos_c * sin_b
+        r13_at_b_turned_2 = r13_at_b_turned * cos_nutation - r12_at_b * sin_nutation
+        x = x_at_b + head_offset * r11_at_b - pivot_length * r13_at_b_turned_2
+        joint_z = axis_z - offset_z
+        r31_at_b = -sin_b * sin_nutation
+        r32_at_b = -cos_b * sin_nutation
+        r33_at_b_turned = cos_nutation_squared - r32_at_b * sin_nutation
+        z = joint_z + head_offset * r31_at_b - pivot_length * r33_at_b_turned
+        z_minus_joint_z = z - joint_z
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * cos_nutation
+        rate_of_r31_at_b = -rate_of_sin_b * sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * sin_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * sin_nutation
+        rate_of_z = speed_z + head_offset * rate_of_r31_at_b - pivot_length * rate_of_r33_at_b_turned
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b
+            * (
+                rate_of_y_at_b * cos_nutation
+                + r23_at_b_turned * rate_of_z_minus_speed_z
+                + rate_of_r23_at_b_turned * z_minus_joint_z
+            )
+            + speed_c * speed_y
+            - rate_of_y * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_x * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                -rate_of_x_at_b * cos_nutation
+                - r13_at_b_turned * rate_of_z_minus_speed_z
+                - rate_of_r13_at_b_turned * z_minus_joint_z
+            )
+            * speed_b
+            - speed_c * speed_x,
+            (
+                r13_at_b_turned * (rate_of_y - rate_of_y_at_b)
+                + (rate_of_x_at_b - rate_of_x) * r23_at_b_turned
+                + rate_of_r13_at_b_turned * (y - y_at_b)
+                + (x_at_b - x) * rate_of_r23_at_b_turned
+            )
+            * speed_b,
+            rate_of_r13_at_b_turned * speed_b,
+            rate_of_r23_at_b_turned * speed_b,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

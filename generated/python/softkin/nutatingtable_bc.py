@@ -74,13 +74,12 @@ class Constants:
         sin_nutation = sin(DEGREE * nutation)
         cos_nutation_times_sin_nutation = cos_nutation * sin_nutation
         cos_nutation_squared = cos_nutation * cos_nutation
-        shared_size = abs(cos_nutation_squared - 1.0)
         one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0 * cos_nutation * cos_nutation
         self.pivot_x, self.pivot_z, self.tool_length, self.offset_x = pivot_x, pivot_z, tool_length, offset_x
         self.offset_y, self.offset_z, self.offset_b, self.offset_c = offset_y, offset_z, offset_b, offset_c
         self.cos_nutation, self.sin_nutation = cos_nutation, sin_nutation
         self.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation
-        self.cos_nutation_squared, self.shared_size = cos_nutation_squared, shared_size
+        self.cos_nutation_squared = cos_nutation_squared
         self.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2
 
 
@@ -93,7 +92,7 @@ class NutatingTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_NutatingTable_BC"
-    KEY = "nutatingtable_bc 9e5a88cef1e91590"
+    KEY = "nutatingtable_bc 7fe2e8827b514731"
     AXES = (
         Axis(
             name="X",
@@ -349,13 +348,10 @@ class NutatingTableBC(Mechanism):
         mid_b, mid_c, offset_b, offset_c, offset_x = k.mid_b, k.mid_c, k.offset_b, k.offset_c, k.offset_x
         offset_y, offset_z = k.offset_y, k.offset_z
         one_minus_cos_nutation_squared_times_2, pivot_x = k.one_minus_cos_nutation_squared_times_2, k.pivot_x
-        pivot_z, shared_size, sin_nutation, single_b = k.pivot_z, k.shared_size, k.sin_nutation, k.single_b
-        single_c, tool_length = k.single_c, k.tool_length
+        pivot_z, sin_nutation, single_b, single_c = k.pivot_z, k.sin_nutation, k.single_b, k.single_c
+        tool_length = k.tool_length
         if not reasonable(x, y, z, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-        # b: its effective length is too short
-        if not (shared_size > 5e-10):
-            return Diagnosis(Status.UNREACHABLE, "B: its effective length is too short", 0.0)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0
@@ -594,6 +590,297 @@ class NutatingTableBC(Mechanism):
             (0.0, 0.0, 0.0, -r13_at_b_turned, 0.0),
             (0.0, 0.0, 0.0, -r23_at_b_turned, 0.0),
             (0.0, 0.0, 0.0, -cos_nutation, -1.0),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_b, axis_c = axes
+        speed_x, speed_y, speed_z, speed_b, speed_c = speeds
+        k = self._constants
+        cos_nutation, cos_nutation_squared, offset_b = k.cos_nutation, k.cos_nutation_squared, k.offset_b
+        offset_c, offset_x, offset_y, offset_z, pivot_x = k.offset_c, k.offset_x, k.offset_y, k.offset_z, k.pivot_x
+        pivot_z, sin_nutation, tool_length = k.pivot_z, k.sin_nutation, k.tool_length
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * sin_nutation
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        sin_c = sin(c)
+        r12_at_b_turned = cos_nutation * sin_c
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_r12_at_b_turned = rate_of_sin_c * cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            - r12_at_b_turned * rate_of_sin_b
+            - rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r13_at_b_turned = rate_of_sin_c * sin_nutation
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + rate_of_sin_b * cos_c
+            + r12_at_b_turned * rate_of_cos_b
+            + rate_of_cos_c * sin_b
+        )
+        rate_of_r12_at_b_turned_2 = rate_of_r12_at_b * cos_nutation + rate_of_r13_at_b_turned * sin_nutation
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * cos_nutation - rate_of_r12_at_b * sin_nutation
+        rate_of_y_at_b = pivot_x * rate_of_sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * sin_nutation
+        r22_at_b_turned = cos_c * cos_nutation
+        r21_at_b = -cos_b * sin_c - r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r22_at_b_turned_2 = r22_at_b * cos_nutation + r23_at_b_turned * sin_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * cos_nutation
+        rate_of_r21_at_b = (
+            -rate_of_sin_c * cos_b
+            - r22_at_b_turned * rate_of_sin_b
+            - rate_of_cos_b * sin_c
+            - rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r22_at_b_turned_2 = rate_of_r22_at_b * cos_nutation + rate_of_r23_at_b_turned * sin_nutation
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * cos_nutation - rate_of_r22_at_b * sin_nutation
+        joint_x = axis_x - offset_x
+        joint_y = axis_y - offset_y
+        joint_z = axis_z - offset_z
+        joint_z_minus_tool_length = joint_z - tool_length
+        r23_at_b_turned_2 = r23_at_b_turned * cos_nutation - r22_at_b * sin_nutation
+        rate_of_y = (
+            rate_of_y_at_b
+            + joint_x * rate_of_r21_at_b
+            + joint_y * rate_of_r22_at_b_turned_2
+            + joint_z_minus_tool_length * rate_of_r23_at_b_turned_2
+            + r21_at_b * speed_x
+            + r22_at_b_turned_2 * speed_y
+            + r23_at_b_turned_2 * speed_z
+        )
+        rate_of_r31_at_b = rate_of_sin_b * sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * sin_nutation
+        rate_of_r32_at_b_turned = rate_of_r32_at_b * cos_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * sin_nutation
+        r31_at_b = sin_b * sin_nutation
+        r32_at_b = -cos_b * sin_nutation
+        r32_at_b_turned = (r32_at_b + sin_nutation) * cos_nutation
+        r33_at_b_turned = cos_nutation_squared - r32_at_b * sin_nutation
+        rate_of_z = (
+            joint_x * rate_of_r31_at_b
+            + joint_y * rate_of_r32_at_b_turned
+            + joint_z_minus_tool_length * rate_of_r33_at_b_turned
+            + r31_at_b * speed_x
+            + r32_at_b_turned * speed_y
+            + r33_at_b_turned * speed_z
+        )
+        r13_at_b_turned = sin_c * sin_nutation
+        rate_of_x_at_b = -pivot_x * rate_of_cos_c
+        r11_at_b = cos_b * cos_c - r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b + cos_c * sin_b
+        r12_at_b_turned_2 = r12_at_b * cos_nutation + r13_at_b_turned * sin_nutation
+        r13_at_b_turned_2 = r13_at_b_turned * cos_nutation - r12_at_b * sin_nutation
+        rate_of_x = (
+            rate_of_x_at_b
+            + joint_x * rate_of_r11_at_b
+            + joint_y * rate_of_r12_at_b_turned_2
+            + joint_z_minus_tool_length * rate_of_r13_at_b_turned_2
+            + r11_at_b * speed_x
+            + r12_at_b_turned_2 * speed_y
+            + r13_at_b_turned_2 * speed_z
+        )
+        y_at_b = pivot_x * sin_c
+        y = y_at_b + joint_x * r21_at_b + joint_y * r22_at_b_turned_2 + joint_z_minus_tool_length * r23_at_b_turned_2
+        x_at_b = -pivot_x * cos_c
+        x = x_at_b + joint_x * r11_at_b + joint_y * r12_at_b_turned_2 + joint_z_minus_tool_length * r13_at_b_turned_2
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * cos_nutation
+        z = joint_x * r31_at_b + joint_y * r32_at_b_turned + joint_z_minus_tool_length * r33_at_b_turned - pivot_z
+        pivot_z_plus_z = pivot_z + z
+        return (
+            rate_of_r11_at_b * speed_x
+            + rate_of_r12_at_b_turned_2 * speed_y
+            + rate_of_r13_at_b_turned_2 * speed_z
+            + rate_of_y * speed_c_plus_cos_nutation_times_speed_b
+            + (-rate_of_y_at_b * cos_nutation - pivot_z_plus_z * rate_of_r23_at_b_turned - r23_at_b_turned * rate_of_z)
+            * speed_b,
+            rate_of_r21_at_b * speed_x
+            + rate_of_r22_at_b_turned_2 * speed_y
+            + rate_of_r23_at_b_turned_2 * speed_z
+            + speed_b
+            * (rate_of_x_at_b * cos_nutation + pivot_z_plus_z * rate_of_r13_at_b_turned + r13_at_b_turned * rate_of_z)
+            - rate_of_x * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_r31_at_b * speed_x
+            + rate_of_r32_at_b_turned * speed_y
+            + rate_of_r33_at_b_turned * speed_z
+            + (
+                (rate_of_y_at_b - rate_of_y) * r13_at_b_turned
+                + r23_at_b_turned * (rate_of_x - rate_of_x_at_b)
+                + (y_at_b - y) * rate_of_r13_at_b_turned
+                + rate_of_r23_at_b_turned * (x - x_at_b)
+            )
+            * speed_b,
+            (
+                -r11_at_b * rate_of_r13_at_b_turned
+                - r13_at_b_turned * rate_of_r11_at_b
+                - r21_at_b * rate_of_r23_at_b_turned
+                - r23_at_b_turned * rate_of_r21_at_b
+            )
+            * speed_b
+            - rate_of_r31_at_b * speed_c_plus_cos_nutation_times_speed_b,
+            (
+                -r12_at_b_turned_2 * rate_of_r13_at_b_turned
+                - r13_at_b_turned * rate_of_r12_at_b_turned_2
+                - r22_at_b_turned_2 * rate_of_r23_at_b_turned
+                - r23_at_b_turned * rate_of_r22_at_b_turned_2
+            )
+            * speed_b
+            - rate_of_r32_at_b_turned * speed_c_plus_cos_nutation_times_speed_b,
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_b, axis_c = axes
+        speed_x, speed_y, speed_z, speed_b, speed_c = speeds
+        k = self._constants
+        cos_nutation, cos_nutation_squared, offset_b = k.cos_nutation, k.cos_nutation_squared, k.offset_b
+        offset_c, offset_x, offset_y, offset_z, pivot_x = k.offset_c, k.offset_x, k.offset_y, k.offset_z, k.pivot_x
+        pivot_z, sin_nutation, tool_length = k.pivot_z, k.sin_nutation, k.tool_length
+        if not reasonable(speed_b, speed_c, speed_x, speed_y, speed_z, axis_b, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * sin_nutation
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        sin_c = sin(c)
+        r12_at_b_turned = cos_nutation * sin_c
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_r12_at_b_turned = rate_of_sin_c * cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            - r12_at_b_turned * rate_of_sin_b
+            - rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r13_at_b_turned = rate_of_sin_c * sin_nutation
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + rate_of_sin_b * cos_c
+            + r12_at_b_turned * rate_of_cos_b
+            + rate_of_cos_c * sin_b
+        )
+        rate_of_r12_at_b_turned_2 = rate_of_r12_at_b * cos_nutation + rate_of_r13_at_b_turned * sin_nutation
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * cos_nutation - rate_of_r12_at_b * sin_nutation
+        rate_of_y_at_b = pivot_x * rate_of_sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * sin_nutation
+        r22_at_b_turned = cos_c * cos_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * cos_nutation
+        rate_of_r21_at_b = (
+            -rate_of_sin_c * cos_b
+            - r22_at_b_turned * rate_of_sin_b
+            - rate_of_cos_b * sin_c
+            - rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r22_at_b_turned_2 = rate_of_r22_at_b * cos_nutation + rate_of_r23_at_b_turned * sin_nutation
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * cos_nutation - rate_of_r22_at_b * sin_nutation
+        joint_x = axis_x - offset_x
+        joint_y = axis_y - offset_y
+        joint_z = axis_z - offset_z
+        joint_z_minus_tool_length = joint_z - tool_length
+        r21_at_b = -cos_b * sin_c - r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r22_at_b_turned_2 = r22_at_b * cos_nutation + r23_at_b_turned * sin_nutation
+        r23_at_b_turned_2 = r23_at_b_turned * cos_nutation - r22_at_b * sin_nutation
+        rate_of_y = (
+            rate_of_y_at_b
+            + joint_x * rate_of_r21_at_b
+            + joint_y * rate_of_r22_at_b_turned_2
+            + joint_z_minus_tool_length * rate_of_r23_at_b_turned_2
+            + r21_at_b * speed_x
+            + r22_at_b_turned_2 * speed_y
+            + r23_at_b_turned_2 * speed_z
+        )
+        rate_of_r31_at_b = rate_of_sin_b * sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * sin_nutation
+        rate_of_r32_at_b_turned = rate_of_r32_at_b * cos_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * sin_nutation
+        r31_at_b = sin_b * sin_nutation
+        r32_at_b = -cos_b * sin_nutation
+        r32_at_b_turned = (r32_at_b + sin_nutation) * cos_nutation
+        r33_at_b_turned = cos_nutation_squared - r32_at_b * sin_nutation
+        rate_of_z = (
+            joint_x * rate_of_r31_at_b
+            + joint_y * rate_of_r32_at_b_turned
+            + joint_z_minus_tool_length * rate_of_r33_at_b_turned
+            + r31_at_b * speed_x
+            + r32_at_b_turned * speed_y
+            + r33_at_b_turned * speed_z
+        )
+        r13_at_b_turned = sin_c * sin_nutation
+        rate_of_x_at_b = -pivot_x * rate_of_cos_c
+        r11_at_b = cos_b * cos_c - r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b + cos_c * sin_b
+        r12_at_b_turned_2 = r12_at_b * cos_nutation + r13_at_b_turned * sin_nutation
+        r13_at_b_turned_2 = r13_at_b_turned * cos_nutation - r12_at_b * sin_nutation
+        rate_of_x = (
+            rate_of_x_at_b
+            + joint_x * rate_of_r11_at_b
+            + joint_y * rate_of_r12_at_b_turned_2
+            + joint_z_minus_tool_length * rate_of_r13_at_b_turned_2
+            + r11_at_b * speed_x
+            + r12_at_b_turned_2 * speed_y
+            + r13_at_b_turned_2 * speed_z
+        )
+        y_at_b = pivot_x * sin_c
+        y = y_at_b + joint_x * r21_at_b + joint_y * r22_at_b_turned_2 + joint_z_minus_tool_length * r23_at_b_turned_2
+        x_at_b = -pivot_x * cos_c
+        x = x_at_b + joint_x * r11_at_b + joint_y * r12_at_b_turned_2 + joint_z_minus_tool_length * r13_at_b_turned_2
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * cos_nutation
+        z = joint_x * r31_at_b + joint_y * r32_at_b_turned + joint_z_minus_tool_length * r33_at_b_turned - pivot_z
+        pivot_z_plus_z = pivot_z + z
+        return (
+            rate_of_r11_at_b * speed_x
+            + rate_of_r12_at_b_turned_2 * speed_y
+            + rate_of_r13_at_b_turned_2 * speed_z
+            + rate_of_y * speed_c_plus_cos_nutation_times_speed_b
+            + (-rate_of_y_at_b * cos_nutation - pivot_z_plus_z * rate_of_r23_at_b_turned - r23_at_b_turned * rate_of_z)
+            * speed_b,
+            rate_of_r21_at_b * speed_x
+            + rate_of_r22_at_b_turned_2 * speed_y
+            + rate_of_r23_at_b_turned_2 * speed_z
+            + speed_b
+            * (rate_of_x_at_b * cos_nutation + pivot_z_plus_z * rate_of_r13_at_b_turned + r13_at_b_turned * rate_of_z)
+            - rate_of_x * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_r31_at_b * speed_x
+            + rate_of_r32_at_b_turned * speed_y
+            + rate_of_r33_at_b_turned * speed_z
+            + (
+                (rate_of_y_at_b - rate_of_y) * r13_at_b_turned
+                + r23_at_b_turned * (rate_of_x - rate_of_x_at_b)
+                + (y_at_b - y) * rate_of_r13_at_b_turned
+                + rate_of_r23_at_b_turned * (x - x_at_b)
+            )
+            * speed_b,
+            -rate_of_r13_at_b_turned * speed_b,
+            -rate_of_r23_at_b_turned * speed_b,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

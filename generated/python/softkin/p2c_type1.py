@@ -82,10 +82,11 @@ class Constants:
         one_by_outer_arm_squared = 1.0 / (outer_arm * outer_arm)
         twice_inner_arm = 2.0 * inner_arm
         sum_in_slope_1_by_x = 2.0 * tcp_displacement - 2.0 * displacement
-        self.inner_arm, self.offset_a1, self.offset_a2 = inner_arm, offset_a1, offset_a2
-        self.min_type2_margin, self.assembly_sign = min_type2_margin, assembly_sign
-        self.product_in_normal_divisor, self.twice_outer_arm = product_in_normal_divisor, twice_outer_arm
-        self.outer_arm_squared_times_rounding = outer_arm_squared_times_rounding
+        inner_arm_squared_times_2 = 2.0 * inner_arm * inner_arm
+        self.inner_arm, self.displacement, self.tcp_displacement = inner_arm, displacement, tcp_displacement
+        self.offset_a1, self.offset_a2, self.min_type2_margin = offset_a1, offset_a2, min_type2_margin
+        self.assembly_sign, self.product_in_normal_divisor = assembly_sign, product_in_normal_divisor
+        self.twice_outer_arm, self.outer_arm_squared_times_rounding = twice_outer_arm, outer_arm_squared_times_rounding
         self.machine_scale_times_plane = machine_scale_times_plane
         self.inner_arm_times_shortest_link = inner_arm_times_shortest_link
         self.inner_arm_minus_outer_arm = inner_arm_minus_outer_arm
@@ -94,7 +95,7 @@ class Constants:
         self.one_by_outer_arm, self.inner_arm_plus_outer_arm = one_by_outer_arm, inner_arm_plus_outer_arm
         self.assembly_sign_by_outer_arm_squared = assembly_sign_by_outer_arm_squared
         self.one_by_outer_arm_squared, self.twice_inner_arm = one_by_outer_arm_squared, twice_inner_arm
-        self.sum_in_slope_1_by_x = sum_in_slope_1_by_x
+        self.sum_in_slope_1_by_x, self.inner_arm_squared_times_2 = sum_in_slope_1_by_x, inner_arm_squared_times_2
 
 
 class P2CType1(OffsetKinematics):
@@ -106,7 +107,7 @@ class P2CType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2C_Type1"
-    KEY = "p2c_type1 b933ceccadc315dd"
+    KEY = "p2c_type1 fbcba3dc3ed70f77"
     AXES = (
         Axis(
             name="A1",
@@ -164,6 +165,7 @@ class P2CType1(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((4, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     inner_arm: float
@@ -515,6 +517,123 @@ class P2CType1(OffsetKinematics):
             (slope_1_by_a1_by_determinant * slope_2_by_x, -slope_1_by_x * slope_2_by_a2_by_determinant),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self._constants
+        assembly_sign, displacement_minus_tcp_displacement = k.assembly_sign, k.displacement_minus_tcp_displacement
+        inner_arm, inner_arm_squared_times_2 = k.inner_arm, k.inner_arm_squared_times_2
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, outer_arm_squared_times_rounding = k.offset_a2, k.outer_arm_squared_times_rounding
+        product_in_normal_divisor, sum_in_slope_1_by_x = k.product_in_normal_divisor, k.sum_in_slope_1_by_x
+        twice_inner_arm, twice_outer_arm = k.twice_inner_arm, k.twice_outer_arm
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        cos_a1 = cos(a1)
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm * cos_a1  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm * cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = -inner_arm * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = -inner_arm * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (twice_outer_arm - between_centres)
+            * (between_centres + twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_square
+        )
+        # the rods do not meet
+        if not (height_square >= -outer_arm_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_square) * assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + twice_inner_arm * cos_a1 - sum_in_slope_1_by_x
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_1_by_y = twice_y + twice_inner_arm * sin_a1
+        slope_2_by_x = sum_in_slope_1_by_x + twice_x - twice_inner_arm * cos_a2
+        slope_2_by_y = twice_y + twice_inner_arm * sin_a2
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
+        # nothing controls the plate
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
+            return Status.IMPOSSIBLE
+        x_minus_pivot_1_x = x - pivot_1_x
+        y_minus_pivot_1_y = y - pivot_1_y
+        slope_1_by_a1 = twice_inner_arm * (y_minus_pivot_1_y * cos_a1 - x_minus_pivot_1_x * sin_a1)
+        x_minus_pivot_2_x = x - pivot_2_x
+        y_minus_pivot_2_y = y - pivot_2_y
+        slope_2_by_a2 = twice_inner_arm * (y_minus_pivot_2_y * cos_a2 + x_minus_pivot_2_x * sin_a2)
+        one_by_determinant = 1.0 / determinant
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            slope_2_by_x * speed_a1_times_slope_1_by_a1 - slope_1_by_x * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_slope_1_by_y = twice_velocity_y + rate_of_sin_a1 * twice_inner_arm
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_2_by_y = twice_velocity_y + rate_of_sin_a2 * twice_inner_arm
+        velocity_x = one_by_determinant * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_slope_1_by_a1 = (
+            (twice_inner_arm * y_minus_pivot_1_y - inner_arm_squared_times_2 * sin_a1) * rate_of_cos_a1
+            + rate_of_sin_a1 * (inner_arm_squared_times_2 * cos_a1 - twice_inner_arm * x_minus_pivot_1_x)
+            + twice_inner_arm * (velocity_y * cos_a1 - velocity_x * sin_a1)
+        )
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x + rate_of_cos_a1 * twice_inner_arm
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a2 * twice_inner_arm
+        rate_of_determinant = (
+            rate_of_slope_1_by_x * slope_2_by_y
+            + rate_of_slope_2_by_y * slope_1_by_x
+            - rate_of_slope_1_by_y * slope_2_by_x
+            - rate_of_slope_2_by_x * slope_1_by_y
+        )
+        rate_of_slope_2_by_a2 = (
+            (twice_inner_arm * y_minus_pivot_2_y - inner_arm_squared_times_2 * sin_a2) * rate_of_cos_a2
+            + rate_of_sin_a2 * (inner_arm_squared_times_2 * cos_a2 + twice_inner_arm * x_minus_pivot_2_x)
+            + twice_inner_arm * (velocity_y * cos_a2 + velocity_x * sin_a2)
+        )
+        return (
+            one_by_determinant
+            * (
+                (-rate_of_slope_1_by_a1 * slope_2_by_y - rate_of_slope_2_by_y * slope_1_by_a1) * speed_a1
+                + (rate_of_slope_1_by_y * slope_2_by_a2 + rate_of_slope_2_by_a2 * slope_1_by_y) * speed_a2
+            )
+            - one_by_determinant * rate_of_determinant * velocity_x,
+            one_by_determinant
+            * (
+                (rate_of_slope_1_by_a1 * slope_2_by_x + rate_of_slope_2_by_x * slope_1_by_a1) * speed_a1
+                + (-rate_of_slope_1_by_x * slope_2_by_a2 - rate_of_slope_2_by_a2 * slope_1_by_x) * speed_a2
+            )
+            - one_by_determinant * rate_of_determinant * velocity_y,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -666,6 +785,42 @@ class P2CType1(OffsetKinematics):
         span_2_x = flange_x - displacement_minus_tcp_displacement  # rod 2: known part of its vector
         branch_knee_2 = -one_by_outer_arm * (flange_y * cos_a2 + span_2_x * sin_a2)
         return (branch_knee_1, branch_knee_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        displacement, inner_arm, offset_a1, offset_a2 = k.displacement, k.inner_arm, k.offset_a1, k.offset_a2
+        tcp_displacement = k.tcp_displacement
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            -displacement - cos(a1) * inner_arm,
+            -inner_arm * sin(a1),
+            0.0,
+            x - tcp_displacement,
+            y,
+            0.0,
+            displacement + cos(a2) * inner_arm,
+            -inner_arm * sin(a2),
+            0.0,
+            tcp_displacement + x,
+            y,
+            0.0,
+            -displacement,
+            0.0,
+            0.0,
+            inner_arm * sin(a1) - displacement,
+            -cos(a1) * inner_arm,
+            0.0,
+            displacement,
+            0.0,
+            0.0,
+            displacement - inner_arm * sin(a2),
+            -cos(a2) * inner_arm,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

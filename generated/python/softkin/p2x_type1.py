@@ -111,7 +111,7 @@ class P2XType1(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_P2X_Type1"
-    KEY = "p2x_type1 94c7c821c18ef4c4"
+    KEY = "p2x_type1 4470745ab5555d52"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
@@ -157,6 +157,7 @@ class P2XType1(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((5, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     arm_length_1: float
@@ -466,6 +467,91 @@ class P2XType1(OffsetKinematics):
             (-shared_product, shared_product),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self._constants
+        arm_length_1_minus_arm_length_2 = k.arm_length_1_minus_arm_length_2
+        arm_length_1_squared_times_rounding, assembly_sign = k.arm_length_1_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_y, centre_1_to_2_y_squared = k.centre_1_to_2_y, k.centre_1_to_2_y_squared
+        machine_scale = k.machine_scale
+        machine_scale_squared_times_free_angle, offset_a1 = k.machine_scale_squared_times_free_angle, k.offset_a1
+        offset_a2, product_in_foot_fraction = k.offset_a2, k.product_in_foot_fraction
+        product_in_normal_divisor, rail_y_1, rail_y_2 = k.product_in_normal_divisor, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        a1 = axis_a1 - offset_a1
+        pivot_1_x = a1 + tcp_offset_1  # rod 1: centre about which it swings
+        a2 = axis_a2 - offset_a2
+        pivot_2_x = a2 - tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        normal_square = centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x  # squared length of the normal
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        between_centres = sqrt(normal_square) if normal_square > 0.0 else 0.0  # distance between the centres
+        one_by_normal_square = 1.0 / normal_square
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (arm_length_1_minus_arm_length_2 + between_centres)
+            * (arm_length_1_minus_arm_length_2 - between_centres)
+            * (between_centres + machine_scale)
+            * (between_centres - machine_scale)
+            * one_by_normal_square
+        )
+        # the rods do not meet
+        if not (height_square >= -arm_length_1_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_square + product_in_foot_fraction) * one_by_normal_square
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + rail_y_1 + centre_1_to_2_x * height_by_normal
+        slope_1_by_y = 2.0 * (y - rail_y_1)
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        slope_2_by_x = 2.0 * (x - pivot_2_x)
+        slope_1_by_y_times_slope_2_by_x = slope_1_by_y * slope_2_by_x
+        slope_1_by_x = 2.0 * (x - pivot_1_x)
+        slope_2_by_y = 2.0 * (y - rail_y_2)
+        slope_1_by_x_times_slope_2_by_y = slope_1_by_x * slope_2_by_y
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
+        # nothing controls the plate
+        if not (abs(determinant) > machine_scale_squared_times_free_angle):
+            return Status.IMPOSSIBLE
+        one_by_determinant_divisor = 1.0 / determinant
+        product_in_velocity_y = one_by_determinant_divisor * (speed_a1 - speed_a2)
+        velocity_y = -product_in_velocity_y * slope_1_by_x * slope_2_by_x
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        velocity_x = one_by_determinant_divisor * (
+            slope_1_by_x_times_slope_2_by_y * speed_a1 - slope_1_by_y_times_slope_2_by_x * speed_a2
+        )
+        rate_of_slope_1_by_a1 = 2.0 * (speed_a1 - velocity_x)
+        rate_of_slope_2_by_x = 2.0 * (velocity_x - speed_a2)
+        rate_of_slope_2_by_x_times_slope_1_by_y = rate_of_slope_2_by_x * slope_1_by_y
+        rate_of_slope_1_by_a1_times_slope_2_by_y = rate_of_slope_1_by_a1 * slope_2_by_y
+        rate_of_determinant = (
+            rate_of_slope_1_by_y * (slope_1_by_x - slope_2_by_x)
+            - rate_of_slope_1_by_a1_times_slope_2_by_y
+            - rate_of_slope_2_by_x_times_slope_1_by_y
+        )
+        return (
+            one_by_determinant_divisor
+            * (
+                (rate_of_slope_1_by_y * slope_1_by_x - rate_of_slope_1_by_a1_times_slope_2_by_y) * speed_a1
+                + (-rate_of_slope_2_by_x_times_slope_1_by_y - rate_of_slope_1_by_y * slope_2_by_x) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant * velocity_x,
+            product_in_velocity_y * (rate_of_slope_1_by_a1 * slope_2_by_x - rate_of_slope_2_by_x * slope_1_by_x)
+            - one_by_determinant_divisor * rate_of_determinant * velocity_y,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -569,6 +655,39 @@ class P2XType1(OffsetKinematics):
         branch_carriage_1 = (flange_x - pivot_1_x) * one_by_arm_length_1
         branch_carriage_2 = (pivot_2_x - flange_x) * one_by_arm_length_2
         return (branch_carriage_1, branch_carriage_2)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        offset_a1, offset_a2, rail_y_1, rail_y_2 = k.offset_a1, k.offset_a2, k.rail_y_1, k.rail_y_2
+        tcp_offset_1, tcp_offset_2 = k.tcp_offset_1, k.tcp_offset_2
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        return (
+            a1,
+            rail_y_1,
+            0.0,
+            x - tcp_offset_1,
+            y,
+            0.0,
+            a2,
+            rail_y_2,
+            0.0,
+            tcp_offset_2 + x,
+            y,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            rail_y_1,
+            0.0,
+            0.0,
+            rail_y_2,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -82,7 +82,7 @@ class P2XType2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2X_Type2"
-    KEY = "p2x_type2 e9df9cbc459e05d1"
+    KEY = "p2x_type2 cfb1e2e1acec7873"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along X", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along X", multi_turn=False),
@@ -123,6 +123,7 @@ class P2XType2(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    LINES = ((5, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 
     arm_length: float
@@ -308,6 +309,44 @@ class P2XType2(OffsetKinematics):
         pivot_1_x_by_slope_2_by_y = pivot_1_x / slope_2_by_y
         return ((0.5, 0.5), (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y))
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self._constants
+        arm_length, arm_length_squared_times_rounding = k.arm_length, k.arm_length_squared_times_rounding
+        assembly_sign, machine_scale_times_free_angle = k.assembly_sign, k.machine_scale_times_free_angle
+        machine_scale_times_rounding, offset_a1, offset_a2 = k.machine_scale_times_rounding, k.offset_a1, k.offset_a2
+        tcp_link_distance = k.tcp_link_distance
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        pivot_1_x = -0.5 * (a1 + tcp_link_distance - a2)  # rod 1: centre about which it swings
+        # the mirror that the machine does not have
+        if not (pivot_1_x >= -machine_scale_times_rounding):
+            return Status.IMPOSSIBLE
+        radicand_y = (arm_length + pivot_1_x) * (arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        # rod 1 cannot reach
+        if not (radicand_y >= -arm_length_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        y = (sqrt(radicand_y) if radicand_y > 0.0 else 0.0) * assembly_sign
+        slope_2_by_y = 2.0 * y
+        # nothing controls the plate
+        if not (abs(slope_2_by_y) > machine_scale_times_free_angle):
+            return Status.IMPOSSIBLE
+        speed_a1_minus_speed_a2 = speed_a1 - speed_a2
+        rate_of_slope_2_by_a1 = 0.5 * speed_a1_minus_speed_a2
+        speed_a1_minus_speed_a2_by_slope_2_by_y = speed_a1_minus_speed_a2 / slope_2_by_y
+        velocity_y = pivot_1_x * speed_a1_minus_speed_a2_by_slope_2_by_y
+        rate_of_slope_2_by_y = 2.0 * velocity_y
+        return (
+            0.0,
+            -rate_of_slope_2_by_a1 * speed_a1_minus_speed_a2_by_slope_2_by_y
+            - rate_of_slope_2_by_y * velocity_y / slope_2_by_y,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -371,6 +410,35 @@ class P2XType2(OffsetKinematics):
         if not (radicand_y >= -arm_length_squared_times_rounding):
             return Status.IMPOSSIBLE
         return ()
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        x, y, _ = position
+        k = self._constants
+        offset_a1, offset_a2, tcp_link_distance = k.offset_a1, k.offset_a2, k.tcp_link_distance
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        return (
+            a1,
+            0.0,
+            0.0,
+            x - 0.5 * tcp_link_distance,
+            y,
+            0.0,
+            a2,
+            0.0,
+            0.0,
+            0.5 * tcp_link_distance + x,
+            y,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """The one branch: see `Mechanism.branches`."""

@@ -67,7 +67,7 @@ class P2Y(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_P2Y"
-    KEY = "p2y f699eaab88473243"
+    KEY = "p2y 30c921779399fe62"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Motor 1", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Motor 2", multi_turn=False),
@@ -230,6 +230,15 @@ class P2Y(OffsetKinematics):
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (0.5, 0.5))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        return (0.0, 0.0)
 
     def _quantities(self, axes: Reals) -> Reals | Status:
         """The quantities beside the axes that have limits."""

@@ -117,7 +117,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer"
-    KEY = "palletizer b22aa2e3fca3a87d"
+    KEY = "palletizer 51e85090a3f5b35b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -861,6 +861,85 @@ class Palletizer(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0, 1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self._constants
+        base_height, link_length_1, link_length_2 = k.base_height, k.link_length_1, k.link_length_2
+        offset_a1, offset_a2, offset_a3, shoulder_offset = k.offset_a1, k.offset_a2, k.offset_a3, k.shoulder_offset
+        wrist_offset_x = k.wrist_offset_x
+        if not reasonable(speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2, axis_a3, axis_a4):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        cos_a1 = cos(a1)
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        sin_a1 = sin(a1)
+        rate_of_y_at_a2 = rate_of_sin_a1 * shoulder_offset
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        sin_a2 = sin(a2)
+        cos_a2 = cos(a2)
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_r23_at_a2 = rate_of_sin_a1 * sin_a2 + rate_of_sin_a2 * sin_a1
+        rate_of_y_at_a2_a3 = rate_of_y_at_a2 + link_length_1 * rate_of_r23_at_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        cos_a3 = cos(a3)
+        sin_a3 = sin(a3)
+        rate_of_cos_a3 = -speed_a3 * sin_a3
+        rate_of_r21_at_a3 = rate_of_sin_a1 * cos_a3 + rate_of_cos_a3 * sin_a1
+        rate_of_y_at_a3 = rate_of_y_at_a2_a3 + link_length_2 * rate_of_r21_at_a3
+        rate_of_y_at_a4 = rate_of_y_at_a3 + rate_of_sin_a1 * wrist_offset_x
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_z_at_a2_a3 = link_length_1 * rate_of_cos_a2
+        rate_of_x_at_a2 = rate_of_cos_a1 * shoulder_offset
+        rate_of_r13_at_a2 = rate_of_sin_a2 * cos_a1 + rate_of_cos_a1 * sin_a2
+        rate_of_x_at_a2_a3 = rate_of_x_at_a2 + link_length_1 * rate_of_r13_at_a2
+        rate_of_r11_at_a3 = rate_of_cos_a3 * cos_a1 + rate_of_cos_a1 * cos_a3
+        rate_of_x_at_a3 = rate_of_x_at_a2_a3 + link_length_2 * rate_of_r11_at_a3
+        rate_of_x_at_a4 = rate_of_x_at_a3 + rate_of_cos_a1 * wrist_offset_x
+        z_at_a2_a3 = base_height + link_length_1 * cos_a2
+        z_at_a3 = z_at_a2_a3 - link_length_2 * sin_a3
+        shared_sum = (base_height - z_at_a2_a3) * speed_a2 + speed_a3 * (z_at_a2_a3 - z_at_a3)
+        speed_a2_minus_speed_a3 = speed_a2 - speed_a3
+        speed_a2_minus_speed_a3_times_cos_a1 = speed_a2_minus_speed_a3 * cos_a1
+        speed_a2_minus_speed_a3_times_sin_a1 = speed_a2_minus_speed_a3 * sin_a1
+        rate_of_sin_a3 = speed_a3 * cos_a3
+        rate_of_z_at_a3 = rate_of_z_at_a2_a3 - link_length_2 * rate_of_sin_a3
+        speed_a3_times_rate_of_z_at_a3 = rate_of_z_at_a3 * speed_a3
+        y_at_a2 = shoulder_offset * sin_a1
+        r23_at_a2 = sin_a1 * sin_a2
+        y_at_a2_a3 = y_at_a2 + link_length_1 * r23_at_a2
+        r21_at_a3 = cos_a3 * sin_a1
+        y_at_a3 = y_at_a2_a3 + link_length_2 * r21_at_a3
+        x_at_a2 = shoulder_offset * cos_a1
+        r13_at_a2 = cos_a1 * sin_a2
+        x_at_a2_a3 = x_at_a2 + link_length_1 * r13_at_a2
+        r11_at_a3 = cos_a1 * cos_a3
+        x_at_a3 = x_at_a2_a3 + link_length_2 * r11_at_a3
+        shared_sum_2 = (
+            (rate_of_x_at_a2 * speed_a2 - rate_of_x_at_a3 * speed_a3) * cos_a1
+            + rate_of_cos_a1 * (speed_a2 * (x_at_a2 - x_at_a2_a3) + speed_a3 * (x_at_a2_a3 - x_at_a3))
+            + (rate_of_y_at_a2 * speed_a2 - rate_of_y_at_a3 * speed_a3) * sin_a1
+            - rate_of_sin_a1 * ((y_at_a2_a3 - y_at_a2) * speed_a2 + (y_at_a3 - y_at_a2_a3) * speed_a3)
+        )
+        return (
+            speed_a3_times_rate_of_z_at_a3 * cos_a1
+            + rate_of_z_at_a2_a3 * speed_a2_minus_speed_a3_times_cos_a1
+            - rate_of_cos_a1 * shared_sum
+            - rate_of_y_at_a4 * speed_a1,
+            rate_of_x_at_a4 * speed_a1
+            + rate_of_z_at_a2_a3 * speed_a2_minus_speed_a3_times_sin_a1
+            + speed_a3_times_rate_of_z_at_a3 * sin_a1
+            - rate_of_sin_a1 * shared_sum,
+            shared_sum_2
+            - rate_of_x_at_a2_a3 * speed_a2_minus_speed_a3_times_cos_a1
+            - rate_of_y_at_a2_a3 * speed_a2_minus_speed_a3_times_sin_a1,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _quantities(self, axes: Reals) -> Reals | Status:

@@ -90,7 +90,7 @@ class PCC(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_PCC"
-    KEY = "pcc fc915a8e08510de0"
+    KEY = "pcc 825d834aaed1486c"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Inner arm about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Outer arm about Z, its absolute angle", multi_turn=True),
@@ -132,6 +132,7 @@ class PCC(OffsetKinematics):
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2", "elbow")
+    LINES = ((0, 0, "A1"), (1, 1, "A2"), (0, 1, ""), (1, 2, ""))
     DISTANCE_AXES = (0, 1)
 
     link_length_1: float
@@ -344,6 +345,28 @@ class PCC(OffsetKinematics):
         cos_a2 = cos(a2)
         return ((-link_length_1 * sin_a1, -link_length_2 * sin_a2), (link_length_1 * cos_a1, link_length_2 * cos_a2))
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self._constants
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a1, speed_a2, axis_a1, axis_a2):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        rate_of_sin_a2 = cos(a2) * speed_a2
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a2 = -sin(a2) * speed_a2
+        link_length_2_times_speed_a2 = link_length_2 * speed_a2
+        link_length_1_times_speed_a1 = link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1 - link_length_2_times_speed_a2 * rate_of_sin_a2,
+            link_length_1_times_speed_a1 * rate_of_cos_a1 + link_length_2_times_speed_a2 * rate_of_cos_a2,
+        )
+
     def _quantities(self, axes: Reals) -> Reals | Status:
         """The quantities beside the axes that have limits."""
         axis_a1, axis_a2 = axes
@@ -441,6 +464,31 @@ class PCC(OffsetKinematics):
         a2 = DEGREE * (axis_a2 - offset_a2)
         sin_a2_from_a1 = -sin(a1 - a2)
         return (sin_a2_from_a1,)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2 = axes
+        k = self._constants
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        return (
+            0.0,
+            0.0,
+            0.0,
+            cos(a1) * link_length_1,
+            link_length_1 * sin(a1),
+            0.0,
+            cos(a1) * link_length_1 + cos(a2) * link_length_2,
+            link_length_1 * sin(a1) + link_length_2 * sin(a2),
+            0.0,
+            -link_length_1 * sin(a1),
+            cos(a1) * link_length_1,
+            0.0,
+            cos(a1) * link_length_1 - link_length_2 * sin(a2),
+            link_length_1 * sin(a1) + cos(a2) * link_length_2,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -281,14 +281,20 @@ class Constants:
         within = 1e-11 * machine_scale  # tolerance of the leg lengths
         cos_home_heading_2 = cos(DEGREE * home_heading)
         sin_home_heading_2 = sin(DEGREE * home_heading)
+        # leg 1 as a line: unit vector, and its moment about the platform's origin
+        divisor_1_2 = rod_length_1 if rod_length_1 > 1e-9 * machine_scale else 1.0
+        # leg 2 as a line: unit vector, and its moment about the platform's origin
+        divisor_2_2 = rod_length_2 if rod_length_2 > 1e-9 * machine_scale else 1.0
+        # leg 3 as a line: unit vector, and its moment about the platform's origin
+        divisor_3_2 = rod_length_3 if rod_length_3 > 1e-9 * machine_scale else 1.0
         machine_scale_times_shortest_link = 1e-9 * machine_scale
         machine_scale_times_plane = 1e-6 * machine_scale
         arm_length_1_times_shortest_link = 1e-9 * arm_length_1
-        arm_length_1_minus_rod_length_1 = arm_length_1 - rod_length_1
+        rod_length_1_minus_arm_length_1 = rod_length_1 - arm_length_1
         arm_length_2_times_shortest_link = 1e-9 * arm_length_2
-        arm_length_2_minus_rod_length_2 = arm_length_2 - rod_length_2
+        rod_length_2_minus_arm_length_2 = rod_length_2 - arm_length_2
         arm_length_3_times_shortest_link = 1e-9 * arm_length_3
-        arm_length_3_minus_rod_length_3 = arm_length_3 - rod_length_3
+        rod_length_3_minus_arm_length_3 = rod_length_3 - arm_length_3
         one_by_platform_radius = 1.0 / platform_radius
         one_by_machine_scale_squared = 1.0 / (machine_scale * machine_scale)
         one_by_rod_length_1 = 1.0 / rod_length_1
@@ -298,6 +304,15 @@ class Constants:
         arm_length_2_plus_rod_length_2 = arm_length_2 + rod_length_2
         arm_length_3_plus_rod_length_3 = arm_length_3 + rod_length_3
         quotient_in_determinant = 1.0 / (rod_length_1 * rod_length_2 * rod_length_3)
+        one_by_divisor_1_2 = 1.0 / divisor_1_2
+        one_by_divisor_2_2 = 1.0 / divisor_2_2
+        one_by_divisor_3_2 = 1.0 / divisor_3_2
+        platform_1_x_by_platform_radius = platform_1_x / platform_radius
+        platform_1_y_by_platform_radius = platform_1_y / platform_radius
+        platform_2_x_by_platform_radius = platform_2_x / platform_radius
+        platform_2_y_by_platform_radius = platform_2_y / platform_radius
+        platform_3_x_by_platform_radius = platform_3_x / platform_radius
+        platform_3_y_by_platform_radius = platform_3_y / platform_radius
         self.base_1_x, self.base_1_y, self.base_2_x, self.base_2_y = base_1_x, base_1_y, base_2_x, base_2_y
         self.base_3_x, self.base_3_y, self.platform_1_x = base_3_x, base_3_y, platform_1_x
         self.platform_1_y, self.platform_2_x, self.platform_2_y = platform_1_y, platform_2_x, platform_2_y
@@ -312,18 +327,25 @@ class Constants:
         self.machine_scale_times_shortest_link = machine_scale_times_shortest_link
         self.machine_scale_times_plane = machine_scale_times_plane
         self.arm_length_1_times_shortest_link = arm_length_1_times_shortest_link
-        self.arm_length_1_minus_rod_length_1 = arm_length_1_minus_rod_length_1
+        self.rod_length_1_minus_arm_length_1 = rod_length_1_minus_arm_length_1
         self.arm_length_2_times_shortest_link = arm_length_2_times_shortest_link
-        self.arm_length_2_minus_rod_length_2 = arm_length_2_minus_rod_length_2
+        self.rod_length_2_minus_arm_length_2 = rod_length_2_minus_arm_length_2
         self.arm_length_3_times_shortest_link = arm_length_3_times_shortest_link
-        self.arm_length_3_minus_rod_length_3 = arm_length_3_minus_rod_length_3
+        self.rod_length_3_minus_arm_length_3 = rod_length_3_minus_arm_length_3
         self.one_by_platform_radius = one_by_platform_radius
         self.one_by_machine_scale_squared, self.one_by_rod_length_1 = one_by_machine_scale_squared, one_by_rod_length_1
         self.one_by_rod_length_2, self.one_by_rod_length_3 = one_by_rod_length_2, one_by_rod_length_3
         self.arm_length_1_plus_rod_length_1 = arm_length_1_plus_rod_length_1
         self.arm_length_2_plus_rod_length_2 = arm_length_2_plus_rod_length_2
         self.arm_length_3_plus_rod_length_3 = arm_length_3_plus_rod_length_3
-        self.quotient_in_determinant = quotient_in_determinant
+        self.quotient_in_determinant, self.one_by_divisor_1_2 = quotient_in_determinant, one_by_divisor_1_2
+        self.one_by_divisor_2_2, self.one_by_divisor_3_2 = one_by_divisor_2_2, one_by_divisor_3_2
+        self.platform_1_x_by_platform_radius = platform_1_x_by_platform_radius
+        self.platform_1_y_by_platform_radius = platform_1_y_by_platform_radius
+        self.platform_2_x_by_platform_radius = platform_2_x_by_platform_radius
+        self.platform_2_y_by_platform_radius = platform_2_y_by_platform_radius
+        self.platform_3_x_by_platform_radius = platform_3_x_by_platform_radius
+        self.platform_3_y_by_platform_radius = platform_3_y_by_platform_radius
 
 
 class Planar3RRR(IterativeForward, TwistChoice):
@@ -335,7 +357,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Planar_3RRR"
-    KEY = "planar_3rrr e5024333caf97add"
+    KEY = "planar_3rrr 014f8bfe0d1147d0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z, from +X", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z, from +X", multi_turn=True),
@@ -412,6 +434,17 @@ class Planar3RRR(IterativeForward, TwistChoice):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (6, 0, "A1"),
+        (8, 2, "A2"),
+        (10, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     base_1_x: float
@@ -749,13 +782,10 @@ class Planar3RRR(IterativeForward, TwistChoice):
         turn_a1, turn_a2, turn_a3 = turns
         ref_a1, ref_a2, ref_a3 = reference
         k = self._constants
-        arm_length_1, arm_length_1_minus_rod_length_1 = k.arm_length_1, k.arm_length_1_minus_rod_length_1
-        arm_length_1_plus_rod_length_1 = k.arm_length_1_plus_rod_length_1
+        arm_length_1, arm_length_1_plus_rod_length_1 = k.arm_length_1, k.arm_length_1_plus_rod_length_1
         arm_length_1_times_shortest_link, arm_length_2 = k.arm_length_1_times_shortest_link, k.arm_length_2
-        arm_length_2_minus_rod_length_2 = k.arm_length_2_minus_rod_length_2
         arm_length_2_plus_rod_length_2 = k.arm_length_2_plus_rod_length_2
         arm_length_2_times_shortest_link, arm_length_3 = k.arm_length_2_times_shortest_link, k.arm_length_3
-        arm_length_3_minus_rod_length_3 = k.arm_length_3_minus_rod_length_3
         arm_length_3_plus_rod_length_3 = k.arm_length_3_plus_rod_length_3
         arm_length_3_times_shortest_link, assembly_sign = k.arm_length_3_times_shortest_link, k.assembly_sign
         base_1_x, base_1_y, base_2_x, base_2_y, base_3_x = k.base_1_x, k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x
@@ -765,7 +795,10 @@ class Planar3RRR(IterativeForward, TwistChoice):
         offset_a2, offset_a3, one_by_platform_radius = k.offset_a2, k.offset_a3, k.one_by_platform_radius
         platform_1_x, platform_1_y, platform_2_x = k.platform_1_x, k.platform_1_y, k.platform_2_x
         platform_2_y, platform_3_x, platform_3_y = k.platform_2_y, k.platform_3_x, k.platform_3_y
-        quotient_in_determinant, sin_home_heading_2 = k.quotient_in_determinant, k.sin_home_heading_2
+        quotient_in_determinant = k.quotient_in_determinant
+        rod_length_1_minus_arm_length_1 = k.rod_length_1_minus_arm_length_1
+        rod_length_2_minus_arm_length_2 = k.rod_length_2_minus_arm_length_2
+        rod_length_3_minus_arm_length_3, sin_home_heading_2 = k.rod_length_3_minus_arm_length_3, k.sin_home_heading_2
         single_a1, single_a2, single_a3 = k.single_a1, k.single_a2, k.single_a3
         if not reasonable(x, y, z, ref_a1, ref_a2, ref_a3):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
@@ -792,12 +825,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
-        one_less_cos_a1 = (effective_a1 - arm_length_1_plus_rod_length_1) * (
-            arm_length_1_minus_rod_length_1 - effective_a1
+        one_less_cos_a1 = (arm_length_1_plus_rod_length_1 - effective_a1) * (
+            effective_a1 + rod_length_1_minus_arm_length_1
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (arm_length_1_minus_rod_length_1 + effective_a1) * (
-            arm_length_1_plus_rod_length_1 + effective_a1
+        one_plus_cos_a1 = (arm_length_1_plus_rod_length_1 + effective_a1) * (
+            effective_a1 - rod_length_1_minus_arm_length_1
         )
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = sum_a1 if sum_a1 > 0.0 else 1.0
@@ -805,7 +838,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # a1: out of reach
         if not (-1.0000000000005 <= cos_swing_a1 <= 1.0000000000005):
             missing = max(
-                abs(arm_length_1_minus_rod_length_1) - effective_a1, effective_a1 - arm_length_1_plus_rod_length_1
+                abs(rod_length_1_minus_arm_length_1) - effective_a1, effective_a1 - arm_length_1_plus_rod_length_1
             )
             return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
         arm_2_x = platform_2_x * cos_heading - platform_2_y * sin_heading
@@ -817,12 +850,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
         if not (effective_a2 > arm_length_2_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
-        one_less_cos_a2 = (effective_a2 - arm_length_2_plus_rod_length_2) * (
-            arm_length_2_minus_rod_length_2 - effective_a2
+        one_less_cos_a2 = (arm_length_2_plus_rod_length_2 - effective_a2) * (
+            effective_a2 + rod_length_2_minus_arm_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_2_minus_rod_length_2 + effective_a2) * (
-            arm_length_2_plus_rod_length_2 + effective_a2
+        one_plus_cos_a2 = (arm_length_2_plus_rod_length_2 + effective_a2) * (
+            effective_a2 - rod_length_2_minus_arm_length_2
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = sum_a2 if sum_a2 > 0.0 else 1.0
@@ -830,7 +863,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # a2: out of reach
         if not (-1.0000000000005 <= cos_swing_a2 <= 1.0000000000005):
             missing = max(
-                abs(arm_length_2_minus_rod_length_2) - effective_a2, effective_a2 - arm_length_2_plus_rod_length_2
+                abs(rod_length_2_minus_arm_length_2) - effective_a2, effective_a2 - arm_length_2_plus_rod_length_2
             )
             return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
         arm_3_x = platform_3_x * cos_heading - platform_3_y * sin_heading
@@ -842,12 +875,12 @@ class Planar3RRR(IterativeForward, TwistChoice):
         if not (effective_a3 > arm_length_3_times_shortest_link):
             return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
-        one_less_cos_a3 = (effective_a3 - arm_length_3_plus_rod_length_3) * (
-            arm_length_3_minus_rod_length_3 - effective_a3
+        one_less_cos_a3 = (arm_length_3_plus_rod_length_3 - effective_a3) * (
+            effective_a3 + rod_length_3_minus_arm_length_3
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_3_minus_rod_length_3 + effective_a3) * (
-            arm_length_3_plus_rod_length_3 + effective_a3
+        one_plus_cos_a3 = (arm_length_3_plus_rod_length_3 + effective_a3) * (
+            effective_a3 - rod_length_3_minus_arm_length_3
         )
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = sum_a3 if sum_a3 > 0.0 else 1.0
@@ -855,7 +888,7 @@ class Planar3RRR(IterativeForward, TwistChoice):
         # a3: out of reach
         if not (-1.0000000000005 <= cos_swing_a3 <= 1.0000000000005):
             missing = max(
-                abs(arm_length_3_minus_rod_length_3) - effective_a3, effective_a3 - arm_length_3_plus_rod_length_3
+                abs(rod_length_3_minus_arm_length_3) - effective_a3, effective_a3 - arm_length_3_plus_rod_length_3
             )
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         sine_square_a1 = one_less_cos_a1 * one_plus_cos_a1  # sine squared, times the squared scale
@@ -1115,6 +1148,192 @@ class Planar3RRR(IterativeForward, TwistChoice):
             ),
         )
 
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self._constants
+        arm_length_1, arm_length_2, arm_length_3, base_1_x = k.arm_length_1, k.arm_length_2, k.arm_length_3, k.base_1_x
+        base_1_y, base_2_x, base_2_y, base_3_x, base_3_y = k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x, k.base_3_y
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        one_by_divisor_1_2, one_by_divisor_2_2 = k.one_by_divisor_1_2, k.one_by_divisor_2_2
+        one_by_divisor_3_2, one_by_platform_radius = k.one_by_divisor_3_2, k.one_by_platform_radius
+        platform_1_x, platform_1_x_by_platform_radius = k.platform_1_x, k.platform_1_x_by_platform_radius
+        platform_1_y, platform_1_y_by_platform_radius = k.platform_1_y, k.platform_1_y_by_platform_radius
+        platform_2_x, platform_2_x_by_platform_radius = k.platform_2_x, k.platform_2_x_by_platform_radius
+        platform_2_y, platform_2_y_by_platform_radius = k.platform_2_y, k.platform_2_y_by_platform_radius
+        platform_3_x, platform_3_x_by_platform_radius = k.platform_3_x, k.platform_3_x_by_platform_radius
+        platform_3_y, platform_3_y_by_platform_radius = k.platform_3_y, k.platform_3_y_by_platform_radius
+        start_r11, start_r12, start_r21, start_r22 = k.start_r11, k.start_r12, k.start_r21, k.start_r22
+        start_x, start_y = k.start_x, k.start_y
+        if not reasonable(speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3, start_x, start_y):
+            return Status.BAD_INPUT
+        start_along = start_r11 + start_r22  # nearest rotation about Z
+        start_across = start_r21 - start_r12
+        start_length = sqrt(start_across * start_across + start_along * start_along)
+        # the tool points exactly the opposite way
+        if not (start_length > 2e-12):
+            return Status.BAD_INPUT
+        start_cos_heading = start_along / start_length
+        start_sin_heading = start_across / start_length
+        # pose of the platform, by Newton's method from the start
+        found = self._find_platform((axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, start_x, start_y))
+        if isinstance(found, Status):
+            return found
+        found_x, found_y, found_cos_heading, found_sin_heading, determinant, *_ = found
+        # nothing controls the plate
+        if not (abs(determinant) > 2e-12):
+            return Status.IMPOSSIBLE
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        sin_a2 = sin(a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        sin_a3 = sin(a3)
+        cos_a1 = cos(a1)
+        cos_a2 = cos(a2)
+        cos_a3 = cos(a3)
+        arm_1_x = found_cos_heading * platform_1_x - found_sin_heading * platform_1_y
+        # leg 1: vector from its joint on the base to its joint on the platform
+        rod_1_x = arm_1_x + found_x - base_1_x - arm_length_1 * cos_a1
+        along_1_x = one_by_divisor_1_2 * rod_1_x
+        arm_1_y = found_cos_heading * platform_1_y + found_sin_heading * platform_1_x
+        rod_1_y = arm_1_y + found_y - base_1_y - arm_length_1 * sin_a1
+        along_1_y = one_by_divisor_1_2 * rod_1_y
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * one_by_platform_radius
+        arm_2_x = found_cos_heading * platform_2_x - found_sin_heading * platform_2_y
+        # leg 2: vector from its joint on the base to its joint on the platform
+        rod_2_x = arm_2_x + found_x - base_2_x - arm_length_2 * cos_a2
+        along_2_x = one_by_divisor_2_2 * rod_2_x
+        arm_2_y = found_cos_heading * platform_2_y + found_sin_heading * platform_2_x
+        rod_2_y = arm_2_y + found_y - base_2_y - arm_length_2 * sin_a2
+        along_2_y = one_by_divisor_2_2 * rod_2_y
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * one_by_platform_radius
+        arm_3_x = found_cos_heading * platform_3_x - found_sin_heading * platform_3_y
+        # leg 3: vector from its joint on the base to its joint on the platform
+        rod_3_x = arm_3_x + found_x - base_3_x - arm_length_3 * cos_a3
+        along_3_x = one_by_divisor_3_2 * rod_3_x
+        arm_3_y = found_cos_heading * platform_3_y + found_sin_heading * platform_3_x
+        rod_3_y = arm_3_y + found_y - base_3_y - arm_length_3 * sin_a3
+        along_3_y = one_by_divisor_3_2 * rod_3_y
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * one_by_platform_radius
+        # twist of the platform per velocity of each axis
+        _, column_1_vx, column_1_vy, column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                (-(along_1_x * sin_a1 - along_1_y * cos_a1) * arm_length_1 * speed_a1,),
+                (-(along_2_x * sin_a2 - along_2_y * cos_a2) * arm_length_2 * speed_a2,),
+                (-(along_3_x * sin_a3 - along_3_y * cos_a3) * arm_length_3 * speed_a3,),
+            ),
+        )
+        rate_of_cos_a1_2 = -speed_a1 * sin_a1
+        rate_of_arm_1_x = (
+            -found_cos_heading * platform_1_y_by_platform_radius - found_sin_heading * platform_1_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_1_x = column_1_vx + rate_of_arm_1_x - arm_length_1 * rate_of_cos_a1_2
+        rate_of_along_1_x = one_by_divisor_1_2 * rate_of_rod_1_x
+        rate_of_sin_a1_2 = speed_a1 * cos_a1
+        rate_of_arm_1_y = column_1_wz * (
+            found_cos_heading * platform_1_x_by_platform_radius - found_sin_heading * platform_1_y_by_platform_radius
+        )
+        rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y - arm_length_1 * rate_of_sin_a1_2
+        rate_of_along_1_y = one_by_divisor_1_2 * rate_of_rod_1_y
+        rate_of_moment_1_z = (
+            along_1_y * rate_of_arm_1_x
+            + arm_1_x * rate_of_along_1_y
+            - along_1_x * rate_of_arm_1_y
+            - arm_1_y * rate_of_along_1_x
+        ) * one_by_platform_radius
+        rate_of_cos_a2_2 = -speed_a2 * sin_a2
+        rate_of_arm_2_x = (
+            -found_cos_heading * platform_2_y_by_platform_radius - found_sin_heading * platform_2_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_2_x = column_1_vx + rate_of_arm_2_x - arm_length_2 * rate_of_cos_a2_2
+        rate_of_along_2_x = one_by_divisor_2_2 * rate_of_rod_2_x
+        rate_of_sin_a2_2 = speed_a2 * cos_a2
+        rate_of_arm_2_y = column_1_wz * (
+            found_cos_heading * platform_2_x_by_platform_radius - found_sin_heading * platform_2_y_by_platform_radius
+        )
+        rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y - arm_length_2 * rate_of_sin_a2_2
+        rate_of_along_2_y = one_by_divisor_2_2 * rate_of_rod_2_y
+        rate_of_moment_2_z = (
+            along_2_y * rate_of_arm_2_x
+            + arm_2_x * rate_of_along_2_y
+            - along_2_x * rate_of_arm_2_y
+            - arm_2_y * rate_of_along_2_x
+        ) * one_by_platform_radius
+        rate_of_cos_a3_2 = -speed_a3 * sin_a3
+        rate_of_arm_3_x = (
+            -found_cos_heading * platform_3_y_by_platform_radius - found_sin_heading * platform_3_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_3_x = column_1_vx + rate_of_arm_3_x - arm_length_3 * rate_of_cos_a3_2
+        rate_of_along_3_x = one_by_divisor_3_2 * rate_of_rod_3_x
+        rate_of_sin_a3_2 = speed_a3 * cos_a3
+        rate_of_arm_3_y = column_1_wz * (
+            found_cos_heading * platform_3_x_by_platform_radius - found_sin_heading * platform_3_y_by_platform_radius
+        )
+        rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y - arm_length_3 * rate_of_sin_a3_2
+        rate_of_along_3_y = one_by_divisor_3_2 * rate_of_rod_3_y
+        rate_of_moment_3_z = (
+            along_3_y * rate_of_arm_3_x
+            + arm_3_x * rate_of_along_3_y
+            - along_3_x * rate_of_arm_3_y
+            - arm_3_y * rate_of_along_3_x
+        ) * one_by_platform_radius
+        _, rate_of_column_1_vx, rate_of_column_1_vy, rate_of_column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                (
+                    (
+                        along_1_y * rate_of_cos_a1_2
+                        + rate_of_along_1_y * cos_a1
+                        - along_1_x * rate_of_sin_a1_2
+                        - rate_of_along_1_x * sin_a1
+                    )
+                    * arm_length_1
+                    * speed_a1
+                    - column_1_vx * rate_of_along_1_x
+                    - column_1_vy * rate_of_along_1_y
+                    - column_1_wz * rate_of_moment_1_z,
+                ),
+                (
+                    (
+                        along_2_y * rate_of_cos_a2_2
+                        + rate_of_along_2_y * cos_a2
+                        - along_2_x * rate_of_sin_a2_2
+                        - rate_of_along_2_x * sin_a2
+                    )
+                    * arm_length_2
+                    * speed_a2
+                    - column_1_vx * rate_of_along_2_x
+                    - column_1_vy * rate_of_along_2_y
+                    - column_1_wz * rate_of_moment_2_z,
+                ),
+                (
+                    (
+                        along_3_y * rate_of_cos_a3_2
+                        + rate_of_along_3_y * cos_a3
+                        - along_3_x * rate_of_sin_a3_2
+                        - rate_of_along_3_x * sin_a3
+                    )
+                    * arm_length_3
+                    * speed_a3
+                    - column_1_vx * rate_of_along_3_x
+                    - column_1_vy * rate_of_along_3_y
+                    - column_1_wz * rate_of_moment_3_z,
+                ),
+            ),
+        )
+        return (rate_of_column_1_vx, rate_of_column_1_vy, 0.0, 0.0, 0.0, one_by_platform_radius * rate_of_column_1_wz)
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -1133,6 +1352,59 @@ class Planar3RRR(IterativeForward, TwistChoice):
         cos_heading = heading_along / heading_length
         sin_heading = heading_across / heading_length
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, _ = position
+        (r11, r12, _), (r21, r22, _), _ = rotation
+        k = self._constants
+        arm_length_1, arm_length_2, arm_length_3, base_1_x = k.arm_length_1, k.arm_length_2, k.arm_length_3, k.base_1_x
+        base_1_y, base_2_x, base_2_y, base_3_x, base_3_y = k.base_1_y, k.base_2_x, k.base_2_y, k.base_3_x, k.base_3_y
+        offset_a1, offset_a2, offset_a3, platform_1_x = k.offset_a1, k.offset_a2, k.offset_a3, k.platform_1_x
+        platform_1_y, platform_2_x, platform_2_y = k.platform_1_y, k.platform_2_x, k.platform_2_y
+        platform_3_x, platform_3_y = k.platform_3_x, k.platform_3_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            base_1_x + arm_length_1 * cos(a1),
+            base_1_y + arm_length_1 * sin(a1),
+            0.0,
+            x + platform_1_x * r11 + platform_1_y * r12,
+            y + platform_1_x * r21 + platform_1_y * r22,
+            0.0,
+            base_2_x + arm_length_2 * cos(a2),
+            base_2_y + arm_length_2 * sin(a2),
+            0.0,
+            x + platform_2_x * r11 + platform_2_y * r12,
+            y + platform_2_x * r21 + platform_2_y * r22,
+            0.0,
+            base_3_x + arm_length_3 * cos(a3),
+            base_3_y + arm_length_3 * sin(a3),
+            0.0,
+            x + platform_3_x * r11 + platform_3_y * r12,
+            y + platform_3_x * r21 + platform_3_y * r22,
+            0.0,
+            base_1_x,
+            base_1_y,
+            0.0,
+            base_1_x - arm_length_1 * sin(a1),
+            base_1_y + arm_length_1 * cos(a1),
+            0.0,
+            base_2_x,
+            base_2_y,
+            0.0,
+            base_2_x - arm_length_2 * sin(a2),
+            base_2_y + arm_length_2 * cos(a2),
+            0.0,
+            base_3_x,
+            base_3_y,
+            0.0,
+            base_3_x - arm_length_3 * sin(a3),
+            base_3_y + arm_length_3 * cos(a3),
+            0.0,
+        )
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

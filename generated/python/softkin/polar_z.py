@@ -76,7 +76,7 @@ class PolarZ(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Polar_Z"
-    KEY = "polar_z ac9610c84473bd12"
+    KEY = "polar_z 34f4d5c37c0e3c62"
     AXES = (
         Axis(name="C", kind="rotary", unit="deg", meaning="Arm about Z", multi_turn=True),
         Axis(name="R", kind="linear", unit="u", meaning="Radius, never negative", multi_turn=False),
@@ -281,6 +281,32 @@ class PolarZ(Mechanism):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_c, axis_r, axis_z = axes
+        speed_c, speed_r, speed_z = speeds
+        k = self._constants
+        offset_c, offset_r = k.offset_c, k.offset_r
+        if not reasonable(speed_c, speed_r, speed_z, axis_c, axis_r, axis_z):
+            return Status.BAD_INPUT
+        r = axis_r - offset_r
+        # R where the machine has no pose
+        if not (r >= -1e-9 and r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        c = DEGREE * (axis_c - offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_cos_c = -speed_c * sin_c
+        return (
+            rate_of_cos_c * speed_r + (-r * rate_of_sin_c - speed_r * sin_c) * speed_c,
+            rate_of_sin_c * speed_r + speed_c * (speed_r * cos_c + r * rate_of_cos_c),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -88,7 +88,7 @@ class Scara2Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara2_Z"
-    KEY = "scara2_z b37de2a39400f06c"
+    KEY = "scara2_z dd7e1ee91aeedce3"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -322,6 +322,33 @@ class Scara2Z(OffsetKinematics):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_z = axes
+        speed_a1, speed_a2, speed_z = speeds
+        k = self._constants
+        arm_length_1, arm_length_2, offset_a1, offset_a2 = k.arm_length_1, k.arm_length_2, k.offset_a1, k.offset_a2
+        if not reasonable(speed_a1, speed_a2, speed_z, axis_a1, axis_a2, axis_z):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        speed_a1_plus_speed_a2 = speed_a1 + speed_a2
+        rate_of_sin_a12 = cos(a1_plus_a2) * speed_a1_plus_speed_a2
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -sin(a1_plus_a2) * speed_a1_plus_speed_a2
+        shared_product = arm_length_2 * speed_a1_plus_speed_a2
+        arm_length_1_times_speed_a1 = arm_length_1 * speed_a1
+        return (
+            -arm_length_1_times_speed_a1 * rate_of_sin_a1 - rate_of_sin_a12 * shared_product,
+            arm_length_1_times_speed_a1 * rate_of_cos_a1 + rate_of_cos_a12 * shared_product,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

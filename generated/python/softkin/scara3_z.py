@@ -92,7 +92,7 @@ class Scara3Z(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara3_Z"
-    KEY = "scara3_z f177072bc3d7d9c6"
+    KEY = "scara3_z 4f68cce713dae8e2"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -382,6 +382,44 @@ class Scara3Z(TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 1.0, 0.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_z = axes
+        speed_a1, speed_a2, speed_a3, speed_z = speeds
+        k = self._constants
+        arm_length_1, arm_length_2, arm_length_3 = k.arm_length_1, k.arm_length_2, k.arm_length_3
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        if not reasonable(speed_a1, speed_a2, speed_a3, speed_z, axis_a1, axis_a2, axis_a3, axis_z):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        speed_a1_plus_speed_a2 = speed_a1 + speed_a2
+        rate_of_sin_a12 = cos(a1_plus_a2) * speed_a1_plus_speed_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        speed_a1_plus_speed_a2_plus_speed_a3 = speed_a1_plus_speed_a2 + speed_a3
+        rate_of_sin_a123 = cos(a1_plus_a2_plus_a3) * speed_a1_plus_speed_a2_plus_speed_a3
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -sin(a1_plus_a2) * speed_a1_plus_speed_a2
+        rate_of_cos_a123 = -sin(a1_plus_a2_plus_a3) * speed_a1_plus_speed_a2_plus_speed_a3
+        shared_product = arm_length_2 * speed_a1_plus_speed_a2
+        arm_length_1_times_speed_a1 = arm_length_1 * speed_a1
+        shared_product_2 = arm_length_3 * speed_a1_plus_speed_a2_plus_speed_a3
+        return (
+            -arm_length_1_times_speed_a1 * rate_of_sin_a1
+            - rate_of_sin_a12 * shared_product
+            - rate_of_sin_a123 * shared_product_2,
+            arm_length_1_times_speed_a1 * rate_of_cos_a1
+            + rate_of_cos_a12 * shared_product
+            + rate_of_cos_a123 * shared_product_2,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -101,7 +101,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCCC"
-    KEY = "scara4_zccc c418b750fe2ea7ae"
+    KEY = "scara4_zccc 43434409f0b9de6c"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Column along Z, up", multi_turn=False),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
@@ -393,6 +393,44 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 1.0, 1.0, 1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self._constants
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        offset_a2, offset_a3, offset_a4 = k.offset_a2, k.offset_a3, k.offset_a4
+        if not reasonable(speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2, axis_a3, axis_a4):
+            return Status.BAD_INPUT
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        rate_of_sin_a2 = cos(a2) * speed_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        a2_plus_a3 = a2 + a3
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_sin_a23 = cos(a2_plus_a3) * speed_a2_plus_speed_a3
+        a4 = DEGREE * (axis_a4 - offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        speed_a2_plus_speed_a3_plus_speed_a4 = speed_a2_plus_speed_a3 + speed_a4
+        rate_of_sin_a234 = cos(a2_plus_a3_plus_a4) * speed_a2_plus_speed_a3_plus_speed_a4
+        rate_of_cos_a2 = -sin(a2) * speed_a2
+        rate_of_cos_a23 = -sin(a2_plus_a3) * speed_a2_plus_speed_a3
+        rate_of_cos_a234 = -sin(a2_plus_a3_plus_a4) * speed_a2_plus_speed_a3_plus_speed_a4
+        shared_product = link_length_2 * speed_a2_plus_speed_a3
+        link_length_1_times_speed_a2 = link_length_1 * speed_a2
+        shared_product_2 = link_length_3 * speed_a2_plus_speed_a3_plus_speed_a4
+        return (
+            -link_length_1_times_speed_a2 * rate_of_sin_a2
+            - rate_of_sin_a23 * shared_product
+            - rate_of_sin_a234 * shared_product_2,
+            link_length_1_times_speed_a2 * rate_of_cos_a2
+            + rate_of_cos_a23 * shared_product
+            + rate_of_cos_a234 * shared_product_2,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

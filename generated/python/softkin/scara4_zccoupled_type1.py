@@ -97,7 +97,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
-    KEY = "scara4_zccoupled_type1 a5ed80bacc15434a"
+    KEY = "scara4_zccoupled_type1 94cb2b7163ccbd2b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Arm 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Arm 2 about Z", multi_turn=True),
@@ -385,6 +385,33 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0, 0.0),
             (1.0, 1.0, 0.0, 1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self._constants
+        link_length_1, link_length_2, offset_a1, offset_a2 = k.link_length_1, k.link_length_2, k.offset_a1, k.offset_a2
+        if not reasonable(speed_a1, speed_a2, speed_a3, speed_a4, axis_a1, axis_a2, axis_a3, axis_a4):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a1_plus_a2 = a1 + a2
+        speed_a1_plus_speed_a2 = speed_a1 + speed_a2
+        rate_of_sin_a12 = cos(a1_plus_a2) * speed_a1_plus_speed_a2
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -sin(a1_plus_a2) * speed_a1_plus_speed_a2
+        shared_product = link_length_2 * speed_a1_plus_speed_a2
+        link_length_1_times_speed_a1 = link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1 - rate_of_sin_a12 * shared_product,
+            link_length_1_times_speed_a1 * rate_of_cos_a1 + rate_of_cos_a12 * shared_product,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

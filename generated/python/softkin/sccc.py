@@ -83,13 +83,14 @@ class Constants:
         coupling_12_plus_coupling_13_plus_one = 1.0 + coupling_12 + coupling_13
         coupling_23_plus_one = 1.0 + coupling_23
         link_length_1_times_shortest_link = 1e-9 * link_length_1
+        shared_sum = link_length_2 + coupling_12 * link_length_2
+        shared_sum_2 = link_length_3 + coupling_12 * link_length_3 + coupling_13 * link_length_3
+        shared_sum_3 = link_length_3 + coupling_23 * link_length_3
         link_length_1_plus_link_length_2 = link_length_1 + link_length_2
         quotient_in_cos_a2 = 0.25 / (link_length_1 * link_length_2)
         half_by_link_length_1_by_link_length_2 = 0.5 / (link_length_1 * link_length_2)
         quotient_in_open_a2 = coupling_12 * RADIAN
-        shared_sum = link_length_3 + (coupling_12 + coupling_13) * link_length_3
-        shared_sum_2 = link_length_2 + coupling_12 * link_length_2
-        shared_sum_3 = link_length_3 + coupling_23 * link_length_3
+        shared_sum_4 = link_length_3 + (coupling_12 + coupling_13) * link_length_3
         one_by_machine_scale = 1.0 / machine_scale
         self.link_length_1, self.link_length_2, self.link_length_3 = link_length_1, link_length_2, link_length_3
         self.coupling_12, self.coupling_13, self.coupling_23 = coupling_12, coupling_13, coupling_23
@@ -99,12 +100,13 @@ class Constants:
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.coupling_12_plus_coupling_13_plus_one = coupling_12_plus_coupling_13_plus_one
         self.coupling_23_plus_one = coupling_23_plus_one
-        self.link_length_1_times_shortest_link = link_length_1_times_shortest_link
+        self.link_length_1_times_shortest_link, self.shared_sum = link_length_1_times_shortest_link, shared_sum
+        self.shared_sum_2, self.shared_sum_3 = shared_sum_2, shared_sum_3
         self.link_length_1_plus_link_length_2 = link_length_1_plus_link_length_2
         self.quotient_in_cos_a2 = quotient_in_cos_a2
         self.half_by_link_length_1_by_link_length_2 = half_by_link_length_1_by_link_length_2
-        self.quotient_in_open_a2, self.shared_sum, self.shared_sum_2 = quotient_in_open_a2, shared_sum, shared_sum_2
-        self.shared_sum_3, self.one_by_machine_scale = shared_sum_3, one_by_machine_scale
+        self.quotient_in_open_a2, self.shared_sum_4 = quotient_in_open_a2, shared_sum_4
+        self.one_by_machine_scale = one_by_machine_scale
 
 
 class SCCC(OffsetKinematics, TwistChoice):
@@ -116,7 +118,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_SCCC"
-    KEY = "sccc 44de60f530721870"
+    KEY = "sccc ca48a15968b1fb6a"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Link 1 about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Link 2 about Z", multi_turn=True),
@@ -469,7 +471,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         coupling_13, coupling_23, coupling_23_plus_one = k.coupling_13, k.coupling_23, k.coupling_23_plus_one
         link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
         offset_a1, offset_a2, offset_a3, shared_sum = k.offset_a1, k.offset_a2, k.offset_a3, k.shared_sum
-        shared_sum_2, shared_sum_3 = k.shared_sum_2, k.shared_sum_3
+        shared_sum_3, shared_sum_4 = k.shared_sum_3, k.shared_sum_4
         if not reasonable(axis_a1, axis_a2, axis_a3):
             return Status.BAD_INPUT
         a1 = DEGREE * (axis_a1 - offset_a1)
@@ -487,12 +489,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                -link_length_1 * sin_a1 - shared_sum * sin_a123 - shared_sum_2 * sin_a12,
+                -link_length_1 * sin_a1 - shared_sum * sin_a12 - shared_sum_4 * sin_a123,
                 -link_length_2 * sin_a12 - shared_sum_3 * sin_a123,
                 -link_length_3 * sin_a123,
             ),
             (
-                link_length_1 * cos_a1 + shared_sum_2 * cos_a12 + shared_sum * cos_a123,
+                link_length_1 * cos_a1 + shared_sum * cos_a12 + shared_sum_4 * cos_a123,
                 link_length_2 * cos_a12 + shared_sum_3 * cos_a123,
                 link_length_3 * cos_a123,
             ),
@@ -500,6 +502,50 @@ class SCCC(OffsetKinematics, TwistChoice):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (coupling_12_plus_coupling_13_plus_one, coupling_23_plus_one, 1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self._constants
+        coupling_12, coupling_13, coupling_23 = k.coupling_12, k.coupling_13, k.coupling_23
+        link_length_1, link_length_2, link_length_3 = k.link_length_1, k.link_length_2, k.link_length_3
+        offset_a1, offset_a2, offset_a3, shared_sum = k.offset_a1, k.offset_a2, k.offset_a3, k.shared_sum
+        shared_sum_2, shared_sum_3 = k.shared_sum_2, k.shared_sum_3
+        if not reasonable(speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3):
+            return Status.BAD_INPUT
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        motor_a2 = DEGREE * (axis_a2 - offset_a2)
+        a2 = motor_a2 + a1 * coupling_12
+        a1_plus_a2 = a1 + a2
+        rate_of_a2 = speed_a2 + coupling_12 * speed_a1
+        rate_of_a2_plus_speed_a1 = rate_of_a2 + speed_a1
+        rate_of_sin_a12 = cos(a1_plus_a2) * rate_of_a2_plus_speed_a1
+        motor_a3 = DEGREE * (axis_a3 - offset_a3)
+        a3 = motor_a3 + a1 * coupling_13 + coupling_23 * motor_a2
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        rate_of_a3 = speed_a3 + coupling_13 * speed_a1 + coupling_23 * speed_a2
+        rate_of_a2_plus_speed_a1_plus_rate_of_a3 = rate_of_a2_plus_speed_a1 + rate_of_a3
+        rate_of_sin_a123 = cos(a1_plus_a2_plus_a3) * rate_of_a2_plus_speed_a1_plus_rate_of_a3
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -rate_of_a2_plus_speed_a1 * sin(a1_plus_a2)
+        rate_of_cos_a123 = -rate_of_a2_plus_speed_a1_plus_rate_of_a3 * sin(a1_plus_a2_plus_a3)
+        shared_sum_5 = link_length_2 * speed_a2 + shared_sum * speed_a1
+        shared_sum_6 = link_length_3 * speed_a3 + shared_sum_2 * speed_a1 + shared_sum_3 * speed_a2
+        link_length_1_times_speed_a1 = link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1
+            - rate_of_sin_a12 * shared_sum_5
+            - rate_of_sin_a123 * shared_sum_6,
+            link_length_1_times_speed_a1 * rate_of_cos_a1
+            + rate_of_cos_a12 * shared_sum_5
+            + rate_of_cos_a123 * shared_sum_6,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _quantities(self, axes: Reals) -> Reals | Status:

@@ -82,7 +82,7 @@ class TableTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_TableTable_AC"
-    KEY = "tabletable_ac 6909ab958c9b1d87"
+    KEY = "tabletable_ac 1e2e1e9aed843dde"
     AXES = (
         Axis(
             name="X",
@@ -430,6 +430,182 @@ class TableTableAC(Mechanism):
             (0.0, 0.0, 0.0, -cos_c, 0.0),
             (0.0, 0.0, 0.0, sin_c, 0.0),
             (0.0, 0.0, 0.0, 0.0, -1.0),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        speed_x, speed_y, speed_z, speed_a, speed_c = speeds
+        k = self._constants
+        offset_a, offset_c, offset_x, offset_y, offset_z = k.offset_a, k.offset_c, k.offset_x, k.offset_y, k.offset_z
+        pivot_y, pivot_z, tool_length = k.pivot_y, k.pivot_z, k.tool_length
+        if not reasonable(speed_a, speed_c, speed_x, speed_y, speed_z, axis_a, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        a = DEGREE * (axis_a - offset_a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        cos_a = cos(a)
+        rate_of_r12_at_a = rate_of_sin_c * cos_a + rate_of_cos_a * sin_c
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_r13_at_a = rate_of_sin_a * sin_c + rate_of_sin_c * sin_a
+        joint_y = axis_y - offset_y
+        joint_z = axis_z - offset_z
+        joint_z_minus_tool_length = joint_z - tool_length
+        rate_of_z = (
+            speed_z * cos_a + joint_z_minus_tool_length * rate_of_cos_a - joint_y * rate_of_sin_a - speed_y * sin_a
+        )
+        r22_at_a = cos_a * cos_c
+        rate_of_y_at_a = -pivot_y * rate_of_cos_c
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        rate_of_r23_at_a = rate_of_sin_a * cos_c + rate_of_cos_c * sin_a
+        joint_x = axis_x - offset_x
+        r23_at_a = cos_c * sin_a
+        rate_of_y = (
+            rate_of_y_at_a
+            + joint_y * rate_of_r22_at_a
+            + joint_z_minus_tool_length * rate_of_r23_at_a
+            + r22_at_a * speed_y
+            + r23_at_a * speed_z
+            - joint_x * rate_of_sin_c
+            - speed_x * sin_c
+        )
+        r12_at_a = cos_a * sin_c
+        rate_of_x_at_a = -pivot_y * rate_of_sin_c
+        r13_at_a = sin_a * sin_c
+        rate_of_x = (
+            rate_of_x_at_a
+            + speed_x * cos_c
+            + joint_x * rate_of_cos_c
+            + joint_y * rate_of_r12_at_a
+            + joint_z_minus_tool_length * rate_of_r13_at_a
+            + r12_at_a * speed_y
+            + r13_at_a * speed_z
+        )
+        y_at_a = -pivot_y * cos_c
+        y = y_at_a + joint_y * r22_at_a + joint_z_minus_tool_length * r23_at_a - joint_x * sin_c
+        x_at_a = -pivot_y * sin_c
+        x = x_at_a + joint_x * cos_c + joint_y * r12_at_a + joint_z_minus_tool_length * r13_at_a
+        z = joint_z_minus_tool_length * cos_a - pivot_z - joint_y * sin_a
+        pivot_z_plus_z = pivot_z + z
+        return (
+            rate_of_cos_c * speed_x
+            + rate_of_r12_at_a * speed_y
+            + rate_of_r13_at_a * speed_z
+            + rate_of_y * speed_c
+            + (pivot_z_plus_z * rate_of_sin_c + rate_of_z * sin_c) * speed_a,
+            rate_of_r22_at_a * speed_y
+            + rate_of_r23_at_a * speed_z
+            + speed_a * (rate_of_z * cos_c + pivot_z_plus_z * rate_of_cos_c)
+            - rate_of_sin_c * speed_x
+            - rate_of_x * speed_c,
+            rate_of_cos_a * speed_z
+            + speed_a
+            * (
+                (rate_of_y_at_a - rate_of_y) * cos_c
+                + (y_at_a - y) * rate_of_cos_c
+                + (x_at_a - x) * rate_of_sin_c
+                + (rate_of_x_at_a - rate_of_x) * sin_c
+            )
+            - rate_of_sin_a * speed_y,
+            -2.0 * speed_a * (rate_of_cos_c * cos_c + rate_of_sin_c * sin_c),
+            rate_of_sin_a * speed_c
+            + (
+                r22_at_a * rate_of_sin_c
+                + rate_of_r22_at_a * sin_c
+                - rate_of_r12_at_a * cos_c
+                - r12_at_a * rate_of_cos_c
+            )
+            * speed_a,
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        speed_x, speed_y, speed_z, speed_a, speed_c = speeds
+        k = self._constants
+        offset_a, offset_c, offset_x, offset_y, offset_z = k.offset_a, k.offset_c, k.offset_x, k.offset_y, k.offset_z
+        pivot_y, pivot_z, tool_length = k.pivot_y, k.pivot_z, k.tool_length
+        if not reasonable(speed_a, speed_c, speed_x, speed_y, speed_z, axis_a, axis_c, axis_x, axis_y, axis_z):
+            return Status.BAD_INPUT
+        c = DEGREE * (axis_c - offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        a = DEGREE * (axis_a - offset_a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        cos_a = cos(a)
+        rate_of_r12_at_a = rate_of_sin_c * cos_a + rate_of_cos_a * sin_c
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_r13_at_a = rate_of_sin_a * sin_c + rate_of_sin_c * sin_a
+        joint_y = axis_y - offset_y
+        joint_z = axis_z - offset_z
+        joint_z_minus_tool_length = joint_z - tool_length
+        rate_of_z = (
+            speed_z * cos_a + joint_z_minus_tool_length * rate_of_cos_a - joint_y * rate_of_sin_a - speed_y * sin_a
+        )
+        rate_of_y_at_a = -pivot_y * rate_of_cos_c
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        rate_of_r23_at_a = rate_of_sin_a * cos_c + rate_of_cos_c * sin_a
+        joint_x = axis_x - offset_x
+        r22_at_a = cos_a * cos_c
+        r23_at_a = cos_c * sin_a
+        rate_of_y = (
+            rate_of_y_at_a
+            + joint_y * rate_of_r22_at_a
+            + joint_z_minus_tool_length * rate_of_r23_at_a
+            + r22_at_a * speed_y
+            + r23_at_a * speed_z
+            - joint_x * rate_of_sin_c
+            - speed_x * sin_c
+        )
+        rate_of_x_at_a = -pivot_y * rate_of_sin_c
+        r12_at_a = cos_a * sin_c
+        r13_at_a = sin_a * sin_c
+        rate_of_x = (
+            rate_of_x_at_a
+            + speed_x * cos_c
+            + joint_x * rate_of_cos_c
+            + joint_y * rate_of_r12_at_a
+            + joint_z_minus_tool_length * rate_of_r13_at_a
+            + r12_at_a * speed_y
+            + r13_at_a * speed_z
+        )
+        y_at_a = -pivot_y * cos_c
+        y = y_at_a + joint_y * r22_at_a + joint_z_minus_tool_length * r23_at_a - joint_x * sin_c
+        x_at_a = -pivot_y * sin_c
+        x = x_at_a + joint_x * cos_c + joint_y * r12_at_a + joint_z_minus_tool_length * r13_at_a
+        z = joint_z_minus_tool_length * cos_a - pivot_z - joint_y * sin_a
+        pivot_z_plus_z = pivot_z + z
+        return (
+            rate_of_cos_c * speed_x
+            + rate_of_r12_at_a * speed_y
+            + rate_of_r13_at_a * speed_z
+            + rate_of_y * speed_c
+            + (pivot_z_plus_z * rate_of_sin_c + rate_of_z * sin_c) * speed_a,
+            rate_of_r22_at_a * speed_y
+            + rate_of_r23_at_a * speed_z
+            + speed_a * (rate_of_z * cos_c + pivot_z_plus_z * rate_of_cos_c)
+            - rate_of_sin_c * speed_x
+            - rate_of_x * speed_c,
+            rate_of_cos_a * speed_z
+            + speed_a
+            * (
+                (rate_of_y_at_a - rate_of_y) * cos_c
+                + (y_at_a - y) * rate_of_cos_c
+                + (x_at_a - x) * rate_of_sin_c
+                + (rate_of_x_at_a - rate_of_x) * sin_c
+            )
+            - rate_of_sin_a * speed_y,
+            -rate_of_cos_c * speed_a,
+            rate_of_sin_c * speed_a,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

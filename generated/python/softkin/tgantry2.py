@@ -68,7 +68,7 @@ class TGantry2(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry2"
-    KEY = "tgantry2 83f275af2946655f"
+    KEY = "tgantry2 00c040124fc80e54"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),
@@ -231,6 +231,15 @@ class TGantry2(OffsetKinematics):
         if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, 0.5), (-0.5, 0.5))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a, axis_b = axes
+        speed_a, speed_b = speeds
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a, speed_b, axis_a, axis_b):
+            return Status.BAD_INPUT
+        return (0.0, 0.0)
 
     def _quantities(self, axes: Reals) -> Reals | Status:
         """The quantities beside the axes that have limits."""

@@ -68,7 +68,7 @@ class TGantry3(OffsetKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_TGantry3"
-    KEY = "tgantry3 ebec7448346ecd96"
+    KEY = "tgantry3 cb966a3fda57e2a8"
     AXES = (
         Axis(name="A", kind="linear", unit="u", meaning="Belt drive A", multi_turn=False),
         Axis(name="B", kind="linear", unit="u", meaning="Belt drive B", multi_turn=False),
@@ -240,6 +240,14 @@ class TGantry3(OffsetKinematics):
         if not reasonable(axis_a, axis_b, axis_z):
             return Status.BAD_INPUT
         return ((0.5, 0.5, 0.0), (-0.5, 0.5, 0.0), (0.0, 0.0, 1.0))
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a, axis_b, axis_z = axes
+        speed_a, speed_b, speed_z = speeds
+        if not reasonable(speed_a, speed_b, speed_z, axis_a, axis_b, axis_z):
+            return Status.BAD_INPUT
+        return (0.0, 0.0, 0.0)
 
     def _quantities(self, axes: Reals) -> Reals | Status:
         """The quantities beside the axes that have limits."""

@@ -60,7 +60,7 @@ class Tool(OrientationKinematics):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Tool"
-    KEY = "tool dc1763445a1b1311"
+    KEY = "tool 877d142207057dac"
     AXES = ()
     PARAMETERS = (
         Parameter.of("distance", "tool_x", "Flange to the tool, along X"),
@@ -141,6 +141,10 @@ class Tool(OrientationKinematics):
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
+        return ()
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
         return ()
 
     def _image(self) -> Image | Status:

@@ -75,7 +75,7 @@ class Transmit(Mechanism):
     __slots__ = ("_constants",)
 
     NAME = "Softkin_Transmit"
-    KEY = "transmit a571911b83232328"
+    KEY = "transmit c72753112ba2056f"
     AXES = (
         Axis(
             name="X",
@@ -288,6 +288,32 @@ class Transmit(Mechanism):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (0.0, 0.0, -1.0),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_z, axis_c = axes
+        speed_x, speed_z, speed_c = speeds
+        k = self._constants
+        offset_c, offset_x = k.offset_c, k.offset_x
+        if not reasonable(speed_c, speed_x, speed_z, axis_c, axis_x, axis_z):
+            return Status.BAD_INPUT
+        joint_x = axis_x - offset_x
+        # X where the machine has no pose
+        if not (joint_x >= -1e-9 and joint_x <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        c = DEGREE * (axis_c - offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        return (
+            rate_of_cos_c * speed_x + (-joint_x * rate_of_sin_c - speed_x * sin_c) * speed_c,
+            (-speed_x * cos_c - joint_x * rate_of_cos_c) * speed_c - rate_of_sin_c * speed_x,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -80,6 +80,13 @@ class Constants:
         arm_length_squared = arm_length * arm_length
         arm_length_squared_times_rounding = 1e-12 * arm_length * arm_length
         product_in_determinant_divisor = 2e-12 * machine_scale * machine_scale * machine_scale
+        cos_rail_angle_squared_times_2 = 2.0 * cos_rail_angle * cos_rail_angle
+        sum_in_rate_of_slope_1_by_a1 = cos_rail_angle_squared_times_2 + 2.0 * sin_rail_angle * sin_rail_angle
+        sum_in_rate_of_slope_2_by_a2 = (
+            cos_rail_angle_squared_times_2
+            + 0.5 * sin_rail_angle * sin_rail_angle
+            + 0.5 * root_of_3 * root_of_3 * sin_rail_angle * sin_rail_angle
+        )
         product_in_pivot_2_y = 0.5 * root_of_3 * sin_rail_angle
         sum_in_pivot_2_y = 0.5 * inner_radius * root_of_3 - 0.5 * outer_radius * root_of_3
         inner_radius_minus_outer_radius = inner_radius - outer_radius
@@ -103,13 +110,15 @@ class Constants:
         twice_sin_rail_angle = 2.0 * sin_rail_angle
         sum_in_slope_1_by_x = 2.0 * inner_radius - 2.0 * outer_radius
         self.outer_radius, self.inner_radius, self.arm_length = outer_radius, inner_radius, arm_length
-        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
+        self.rail_angle, self.offset_a1, self.offset_a2, self.offset_a3 = rail_angle, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.sin_rail_angle = min_type2_margin, tie, sin_rail_angle
         self.cos_rail_angle, self.assembly_sign = cos_rail_angle, assembly_sign
         self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
         self.product_in_normal_divisor, self.arm_length_squared = product_in_normal_divisor, arm_length_squared
         self.arm_length_squared_times_rounding = arm_length_squared_times_rounding
         self.product_in_determinant_divisor = product_in_determinant_divisor
+        self.sum_in_rate_of_slope_1_by_a1 = sum_in_rate_of_slope_1_by_a1
+        self.sum_in_rate_of_slope_2_by_a2 = sum_in_rate_of_slope_2_by_a2
         self.product_in_pivot_2_y, self.sum_in_pivot_2_y = product_in_pivot_2_y, sum_in_pivot_2_y
         self.inner_radius_minus_outer_radius = inner_radius_minus_outer_radius
         self.half_sin_rail_angle, self.sum_in_pivot_2_x = half_sin_rail_angle, sum_in_pivot_2_x
@@ -136,7 +145,7 @@ class TripodLinear(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Linear"
-    KEY = "tripod_linear dddf88ea5aa0e6dd"
+    KEY = "tripod_linear cac8fc2ff3ffabcb"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1; positive goes down its rail", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2; positive goes down its rail", multi_turn=False),
@@ -202,6 +211,17 @@ class TripodLinear(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (7, 0, "A1"),
+        (9, 2, "A2"),
+        (11, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     outer_radius: float
@@ -781,6 +801,264 @@ class TripodLinear(OffsetKinematics):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self._constants
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        cos_rail_angle, half_sin_rail_angle, inner_radius = k.cos_rail_angle, k.half_sin_rail_angle, k.inner_radius
+        inner_radius_minus_outer_radius, offset_a1 = k.inner_radius_minus_outer_radius, k.offset_a1
+        offset_a2, offset_a3, outer_radius = k.offset_a2, k.offset_a3, k.outer_radius
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, product_in_pivot_2_y = k.product_in_normal_divisor, k.product_in_pivot_2_y
+        root_of_3, sin_rail_angle = k.root_of_3, k.sin_rail_angle
+        sin_rail_angle_times_root_of_3, sum_in_pivot_2_x = k.sin_rail_angle_times_root_of_3, k.sum_in_pivot_2_x
+        sum_in_pivot_2_y, sum_in_rate_of_slope_1_by_a1 = k.sum_in_pivot_2_y, k.sum_in_rate_of_slope_1_by_a1
+        sum_in_rate_of_slope_2_by_a2, sum_in_slope_1_by_x = k.sum_in_rate_of_slope_2_by_a2, k.sum_in_slope_1_by_x
+        twice_cos_rail_angle, twice_sin_rail_angle = k.twice_cos_rail_angle, k.twice_sin_rail_angle
+        if not reasonable(speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3):
+            return Status.BAD_INPUT
+        a2 = axis_a2 - offset_a2
+        pivot_2_y = sum_in_pivot_2_y - a2 * product_in_pivot_2_y
+        a3 = axis_a3 - offset_a3
+        pivot_3_y = a3 * product_in_pivot_2_y - sum_in_pivot_2_y
+        a1 = axis_a1 - offset_a1
+        pivot_1_z = -a1 * cos_rail_angle
+        pivot_2_z = -a2 * cos_rail_angle
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        pivot_3_z = -a3 * cos_rail_angle
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        pivot_1_x = inner_radius_minus_outer_radius - a1 * sin_rail_angle  # rod 1: centre about which it swings
+        pivot_2_x = sum_in_pivot_2_x + a2 * half_sin_rail_angle  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = sum_in_pivot_2_x + a3 * half_sin_rail_angle  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # the rods do not meet
+        if not (height_square >= -arm_length_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + a1 * twice_sin_rail_angle - sum_in_slope_1_by_x
+        y = foot_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        twice_z = 2.0 * z
+        slope_1_by_z = twice_z + a1 * twice_cos_rail_angle
+        a2_times_sin_rail_angle = a2 * sin_rail_angle
+        product_in_slope_2_by_y = (inner_radius - a2_times_sin_rail_angle - outer_radius) * root_of_3
+        slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
+        slope_2_by_z = twice_z + a2 * twice_cos_rail_angle
+        a3_times_sin_rail_angle = a3 * sin_rail_angle
+        product_in_slope_3_by_y = (inner_radius - a3_times_sin_rail_angle - outer_radius) * root_of_3
+        slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
+        slope_3_by_z = twice_z + a3 * twice_cos_rail_angle
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        sum_in_slope_2_by_x = inner_radius_minus_outer_radius + twice_x
+        slope_2_by_x = sum_in_slope_2_by_x - a2_times_sin_rail_angle
+        slope_3_by_x = sum_in_slope_2_by_x - a3_times_sin_rail_angle
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        # nothing controls the plate
+        if not (abs(determinant) > product_in_determinant_divisor):
+            return Status.IMPOSSIBLE
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        one_by_determinant_divisor = 1.0 / determinant
+        slope_3_by_a3 = (
+            (pivot_3_x - x) * sin_rail_angle
+            + (z - pivot_3_z) * twice_cos_rail_angle
+            - (0.5 * product_in_slope_3_by_y + y) * sin_rail_angle_times_root_of_3
+        )
+        speed_a3_times_slope_3_by_a3 = slope_3_by_a3 * speed_a3
+        slope_2_by_a2 = (
+            (pivot_2_x - x) * sin_rail_angle
+            + (y - 0.5 * product_in_slope_2_by_y) * sin_rail_angle_times_root_of_3
+            + (z - pivot_2_z) * twice_cos_rail_angle
+        )
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        slope_1_by_a1 = (z - pivot_1_z) * twice_cos_rail_angle + (x - pivot_1_x) * twice_sin_rail_angle
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        sum_in_velocity_x = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        sum_in_velocity_x_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x + speed_a1 * twice_sin_rail_angle
+        rate_of_slope_3_by_y = rate_of_slope_1_by_y - speed_a3 * sin_rail_angle_times_root_of_3
+        twice_velocity_z = 2.0 * velocity_z
+        rate_of_slope_3_by_z = twice_velocity_z + speed_a3 * twice_cos_rail_angle
+        rate_of_slope_3_by_x = twice_velocity_x - speed_a3 * sin_rail_angle
+        rate_of_slope_1_by_z = twice_velocity_z + speed_a1 * twice_cos_rail_angle
+        rate_of_slope_2_by_y = rate_of_slope_1_by_y + speed_a2 * sin_rail_angle_times_root_of_3
+        rate_of_slope_2_by_z = twice_velocity_z + speed_a2 * twice_cos_rail_angle
+        rate_of_slope_2_by_x = twice_velocity_x - speed_a2 * sin_rail_angle
+        sum_in_rate_of_determinant = (
+            rate_of_slope_1_by_x * sum_in_determinant
+            + rate_of_slope_1_by_y * sum_in_determinant_2
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_x * sum_in_velocity_x
+            - rate_of_slope_2_by_y * sum_in_velocity_y
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+        )
+        rate_of_determinant = (
+            sum_in_rate_of_determinant
+            - rate_of_slope_3_by_x * sum_in_velocity_x_2
+            - rate_of_slope_3_by_y * sum_in_velocity_y_2
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        shared_product_5 = one_by_determinant_divisor * (
+            slope_2_by_y * speed_a3_times_slope_3_by_a3 - slope_3_by_y * speed_a2_times_slope_2_by_a2
+        )
+        shared_product_6 = (
+            slope_3_by_z * speed_a2_times_slope_2_by_a2 - slope_2_by_z * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        product_in_rate_of_slope_2_by_a2 = velocity_y * sin_rail_angle_times_root_of_3
+        twice_cos_rail_angle_times_velocity_z = twice_cos_rail_angle * velocity_z
+        sum_in_rate_of_slope_2_by_a2_2 = twice_cos_rail_angle_times_velocity_z - velocity_x * sin_rail_angle
+        rate_of_slope_3_by_a3 = (
+            sum_in_rate_of_slope_2_by_a2_2 + speed_a3 * sum_in_rate_of_slope_2_by_a2 - product_in_rate_of_slope_2_by_a2
+        )
+        speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3 * speed_a3
+        rate_of_slope_2_by_a2 = (
+            product_in_rate_of_slope_2_by_a2 + sum_in_rate_of_slope_2_by_a2_2 + speed_a2 * sum_in_rate_of_slope_2_by_a2
+        )
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        rate_of_slope_1_by_a1 = (
+            twice_cos_rail_angle_times_velocity_z
+            + speed_a1 * sum_in_rate_of_slope_1_by_a1
+            + twice_sin_rail_angle * velocity_x
+        )
+        speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1 * speed_a1
+        shared_product_10 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        shared_product_11 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        shared_product_12 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        shared_product = one_by_determinant_divisor * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_2 = (
+            slope_2_by_z * speed_a1_times_slope_1_by_a1 - slope_1_by_z * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant_divisor
+        shared_product_3 = one_by_determinant_divisor * (
+            slope_1_by_y * speed_a3_times_slope_3_by_a3 - slope_3_by_y * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_4 = (
+            slope_3_by_z * speed_a1_times_slope_1_by_a1 - slope_1_by_z * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_sum = (
+            rate_of_slope_1_by_z * shared_product_5
+            + rate_of_slope_3_by_y * shared_product_2
+            + rate_of_slope_3_by_z * shared_product
+            - rate_of_slope_2_by_y * shared_product_4
+            - rate_of_slope_2_by_z * shared_product_3
+        )
+        shared_product_7 = (
+            slope_2_by_x * speed_a1_times_slope_1_by_a1 - slope_1_by_x * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant_divisor
+        shared_product_8 = one_by_determinant_divisor * (
+            slope_1_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_9 = one_by_determinant_divisor * (
+            slope_2_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a2_times_slope_2_by_a2
+        )
+        shared_sum_2 = (
+            rate_of_slope_2_by_x * shared_product_4
+            + rate_of_slope_2_by_z * shared_product_8
+            + rate_of_slope_3_by_z * shared_product_7
+            - rate_of_slope_1_by_z * shared_product_9
+            - rate_of_slope_3_by_x * shared_product_2
+        )
+        shared_sum_3 = (
+            rate_of_slope_2_by_y * shared_product_8
+            + rate_of_slope_3_by_x * shared_product
+            + rate_of_slope_3_by_y * shared_product_7
+            - rate_of_slope_1_by_y * shared_product_9
+            - rate_of_slope_2_by_x * shared_product_3
+        )
+        return (
+            shared_product_10
+            + shared_sum
+            + rate_of_slope_1_by_y * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant * velocity_x,
+            shared_product_11
+            + shared_sum_2
+            - rate_of_slope_1_by_x * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant * velocity_y,
+            shared_product_12
+            - shared_sum_3
+            - rate_of_slope_1_by_x * shared_product_5
+            - one_by_determinant_divisor * rate_of_determinant * velocity_z,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -1048,6 +1326,55 @@ class TripodLinear(OffsetKinematics):
             2.0 * a3 + sum_in_branch_carriage_2 - span_3_y * sin_rail_angle_times_root_of_3
         ) * half_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        inner_radius, offset_a1, offset_a2, offset_a3 = k.inner_radius, k.offset_a1, k.offset_a2, k.offset_a3
+        outer_radius, rail_angle = k.outer_radius, k.rail_angle
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        return (
+            -outer_radius - a1 * sin(DEGREE * rail_angle),
+            0.0,
+            -a1 * cos(DEGREE * rail_angle),
+            x - inner_radius,
+            y,
+            z,
+            0.5 * outer_radius + 0.5 * a2 * sin(DEGREE * rail_angle),
+            -0.5 * sqrt(3.0) * (outer_radius + a2 * sin(DEGREE * rail_angle)),
+            -a2 * cos(DEGREE * rail_angle),
+            0.5 * inner_radius + x,
+            y - 0.5 * sqrt(3.0) * inner_radius,
+            z,
+            0.5 * outer_radius + 0.5 * a3 * sin(DEGREE * rail_angle),
+            0.5 * sqrt(3.0) * (outer_radius + a3 * sin(DEGREE * rail_angle)),
+            -a3 * cos(DEGREE * rail_angle),
+            0.5 * inner_radius + x,
+            y + 0.5 * sqrt(3.0) * inner_radius,
+            z,
+            -sin(DEGREE * rail_angle),
+            0.0,
+            -cos(DEGREE * rail_angle),
+            -outer_radius,
+            0.0,
+            0.0,
+            0.5 * sin(DEGREE * rail_angle),
+            -0.5 * sqrt(3.0) * sin(DEGREE * rail_angle),
+            -cos(DEGREE * rail_angle),
+            0.5 * outer_radius,
+            -0.5 * sqrt(3.0) * outer_radius,
+            0.0,
+            0.5 * sin(DEGREE * rail_angle),
+            0.5 * sqrt(3.0) * sin(DEGREE * rail_angle),
+            -cos(DEGREE * rail_angle),
+            0.5 * outer_radius,
+            0.5 * sqrt(3.0) * outer_radius,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -183,7 +183,9 @@ class Constants:
         sum_in_slope_3_by_x = tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3) - 1.0
         product_in_slope_3_by_x = -rail_x_3 * sum_in_slope_3_by_x
         product_in_slope_3_by_y = -rail_y_3 * sum_in_slope_3_by_x
-        self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
+        self.arm_length, self.tcp_displacement, self.rail_x_1 = arm_length, tcp_displacement, rail_x_1
+        self.rail_y_1, self.rail_x_2, self.rail_y_2, self.rail_x_3 = rail_y_1, rail_x_2, rail_y_2, rail_x_3
+        self.rail_y_3, self.offset_a1, self.offset_a2, self.offset_a3 = rail_y_3, offset_a1, offset_a2, offset_a3
         self.min_type2_margin, self.tie, self.pivot_1_y, self.pivot_2_y = min_type2_margin, tie, pivot_1_y, pivot_2_y
         self.centre_1_to_2_y, self.pivot_3_y, self.centre_1_to_3_y = centre_1_to_2_y, pivot_3_y, centre_1_to_3_y
         self.pivot_1_x, self.pivot_2_x, self.centre_1_to_2_x = pivot_1_x, pivot_2_x, centre_1_to_2_x
@@ -215,7 +217,7 @@ class TripodP3Z(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_P3Z"
-    KEY = "tripod_p3z 16cef44b1a3e8642"
+    KEY = "tripod_p3z 436eb3abb879140e"
     AXES = (
         Axis(name="A1", kind="linear", unit="u", meaning="Carriage 1 along Z, up", multi_turn=False),
         Axis(name="A2", kind="linear", unit="u", meaning="Carriage 2 along Z, up", multi_turn=False),
@@ -268,6 +270,17 @@ class TripodP3Z(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (7, 0, "A1"),
+        (8, 2, "A2"),
+        (9, 4, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length: float
@@ -682,6 +695,177 @@ class TripodP3Z(OffsetKinematics):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self._constants
+        arm_length_squared = k.arm_length_squared
+        arm_length_squared_times_rounding, assembly_sign = k.arm_length_squared_times_rounding, k.assembly_sign
+        centre_1_to_2_x, centre_1_to_2_x_times_normal_z = k.centre_1_to_2_x, k.centre_1_to_2_x_times_normal_z
+        centre_1_to_2_y, centre_1_to_2_y_times_normal_z = k.centre_1_to_2_y, k.centre_1_to_2_y_times_normal_z
+        centre_1_to_3_x, centre_1_to_3_x_times_normal_z = k.centre_1_to_3_x, k.centre_1_to_3_x_times_normal_z
+        centre_1_to_3_y, centre_1_to_3_y_times_normal_z = k.centre_1_to_3_y, k.centre_1_to_3_y_times_normal_z
+        normal_z, normal_z_squared, offset_a1, offset_a2 = k.normal_z, k.normal_z_squared, k.offset_a1, k.offset_a2
+        offset_a3, pivot_1_x, pivot_1_y = k.offset_a3, k.pivot_1_x, k.pivot_1_y
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor, product_in_slope_1_by_x = k.product_in_normal_divisor, k.product_in_slope_1_by_x
+        product_in_slope_1_by_y, product_in_slope_2_by_x = k.product_in_slope_1_by_y, k.product_in_slope_2_by_x
+        product_in_slope_2_by_y, product_in_slope_3_by_x = k.product_in_slope_2_by_y, k.product_in_slope_3_by_x
+        product_in_slope_3_by_y, sum_in_projection_2 = k.product_in_slope_3_by_y, k.sum_in_projection_2
+        sum_in_projection_3 = k.sum_in_projection_3
+        if not reasonable(speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3):
+            return Status.BAD_INPUT
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        centre_1_to_2_z = a2 - a1
+        a3 = axis_a3 - offset_a3
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_square = normal_z_squared + normal_x * normal_x + normal_y * normal_y  # squared length of the normal
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        one_by_normal_square = 1.0 / normal_square
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y_times_normal_z) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x_times_normal_z) * projection_2
+            + (centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # the rods do not meet
+        if not (height_square >= -arm_length_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        slope_1_by_x = 2.0 * (x - product_in_slope_1_by_x)
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (y - product_in_slope_1_by_y)
+        z = a1 + foot_z + height_by_normal * normal_z
+        slope_1_by_z = 2.0 * (z - a1)
+        slope_2_by_y = 2.0 * (y - product_in_slope_2_by_y)
+        slope_2_by_z = 2.0 * (z - a2)
+        slope_3_by_y = 2.0 * (y - product_in_slope_3_by_y)
+        slope_3_by_z = 2.0 * (z - a3)
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (x - product_in_slope_2_by_x)
+        slope_3_by_x = 2.0 * (x - product_in_slope_3_by_x)
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        # nothing controls the plate
+        if not (abs(determinant) > product_in_determinant_divisor):
+            return Status.IMPOSSIBLE
+        one_by_determinant = 1.0 / determinant
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        slope_3_by_z_times_speed_a3 = slope_3_by_z * speed_a3
+        slope_2_by_z_times_speed_a2 = slope_2_by_z * speed_a2
+        speed_a1_times_slope_1_by_z = slope_1_by_z * speed_a1
+        velocity_y = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant_2
+            - slope_2_by_z_times_speed_a2 * sum_in_velocity_y
+            - slope_3_by_z_times_speed_a3 * sum_in_velocity_y_2
+        ) * one_by_determinant
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant_3
+            - slope_2_by_z_times_speed_a2 * sum_in_velocity_z
+            - slope_3_by_z_times_speed_a3 * sum_in_velocity_z_2
+        ) * one_by_determinant
+        rate_of_slope_1_by_z = 2.0 * (velocity_z - speed_a1)
+        rate_of_slope_2_by_z = 2.0 * (velocity_z - speed_a2)
+        rate_of_slope_3_by_z = 2.0 * (velocity_z - speed_a3)
+        shared_sum = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        shared_sum_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant
+            - shared_sum * slope_2_by_z_times_speed_a2
+            - shared_sum_2 * slope_3_by_z_times_speed_a3
+        ) * one_by_determinant
+        rate_of_slope_1_by_x = 2.0 * velocity_x
+        rate_of_determinant = (
+            (sum_in_determinant - shared_sum - shared_sum_2) * rate_of_slope_1_by_x
+            + rate_of_slope_1_by_y * (sum_in_determinant_2 - sum_in_velocity_y - sum_in_velocity_y_2)
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        shared_sum_3 = slope_1_by_y * slope_2_by_z_times_speed_a2 - slope_2_by_y * speed_a1_times_slope_1_by_z
+        shared_sum_4 = slope_3_by_y * speed_a1_times_slope_1_by_z - slope_1_by_y * slope_3_by_z_times_speed_a3
+        shared_sum_5 = slope_2_by_y * slope_3_by_z_times_speed_a3 - slope_2_by_z_times_speed_a2 * slope_3_by_y
+        shared_sum_7 = slope_2_by_x * speed_a1_times_slope_1_by_z - slope_1_by_x * slope_2_by_z_times_speed_a2
+        shared_sum_8 = slope_1_by_x * slope_3_by_z_times_speed_a3 - slope_3_by_x * speed_a1_times_slope_1_by_z
+        shared_sum_9 = slope_2_by_z_times_speed_a2 * slope_3_by_x - slope_2_by_x * slope_3_by_z_times_speed_a3
+        speed_a3_times_rate_of_slope_3_by_z = rate_of_slope_3_by_z * speed_a3
+        speed_a2_times_rate_of_slope_2_by_z = rate_of_slope_2_by_z * speed_a2
+        speed_a1_times_rate_of_slope_1_by_z = rate_of_slope_1_by_z * speed_a1
+        shared_sum_12 = (
+            speed_a2_times_rate_of_slope_2_by_z * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_z * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant_3
+        )
+        shared_sum_6 = (
+            slope_1_by_z * ((speed_a2 - speed_a1) * slope_2_by_z + slope_3_by_z * (speed_a1 - speed_a3))
+            + (speed_a3 - speed_a2) * slope_2_by_z * slope_3_by_z
+        )
+        shared_sum_10 = (
+            shared_sum * speed_a2_times_rate_of_slope_2_by_z
+            + shared_sum_2 * speed_a3_times_rate_of_slope_3_by_z
+            - rate_of_slope_1_by_y * shared_sum_6
+            - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant
+        ) * one_by_determinant + one_by_determinant * rate_of_determinant * velocity_x
+        shared_sum_11 = (
+            one_by_determinant
+            * (
+                rate_of_slope_1_by_x * shared_sum_6
+                + speed_a2_times_rate_of_slope_2_by_z * sum_in_velocity_y
+                + speed_a3_times_rate_of_slope_3_by_z * sum_in_velocity_y_2
+                - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant_2
+            )
+            + one_by_determinant * rate_of_determinant * velocity_y
+        )
+        return (
+            -shared_sum_10
+            - one_by_determinant * rate_of_slope_1_by_z * shared_sum_5
+            - one_by_determinant * rate_of_slope_2_by_z * shared_sum_4
+            - one_by_determinant * rate_of_slope_3_by_z * shared_sum_3,
+            -shared_sum_11
+            - one_by_determinant * rate_of_slope_1_by_z * shared_sum_9
+            - one_by_determinant * rate_of_slope_2_by_z * shared_sum_8
+            - one_by_determinant * rate_of_slope_3_by_z * shared_sum_7,
+            one_by_determinant
+            * (
+                rate_of_slope_1_by_x * (shared_sum_3 + shared_sum_4 + shared_sum_5)
+                + rate_of_slope_1_by_y * (shared_sum_7 + shared_sum_8 + shared_sum_9)
+                - shared_sum_12
+            )
+            - one_by_determinant * rate_of_determinant * velocity_z,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -816,6 +1000,50 @@ class TripodP3Z(OffsetKinematics):
         branch_carriage_2 = (a2 - flange_z) * one_by_arm_length
         branch_carriage_3 = (a3 - flange_z) * one_by_arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        offset_a1, offset_a2, offset_a3, rail_x_1 = k.offset_a1, k.offset_a2, k.offset_a3, k.rail_x_1
+        rail_x_2, rail_x_3, rail_y_1, rail_y_2, rail_y_3 = k.rail_x_2, k.rail_x_3, k.rail_y_1, k.rail_y_2, k.rail_y_3
+        tcp_displacement = k.tcp_displacement
+        a1 = axis_a1 - offset_a1
+        a2 = axis_a2 - offset_a2
+        a3 = axis_a3 - offset_a3
+        return (
+            rail_x_1,
+            rail_y_1,
+            a1,
+            x + rail_x_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1),
+            y + rail_y_1 * tcp_displacement / sqrt(rail_x_1 * rail_x_1 + rail_y_1 * rail_y_1),
+            z,
+            rail_x_2,
+            rail_y_2,
+            a2,
+            x + rail_x_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2),
+            y + rail_y_2 * tcp_displacement / sqrt(rail_x_2 * rail_x_2 + rail_y_2 * rail_y_2),
+            z,
+            rail_x_3,
+            rail_y_3,
+            a3,
+            x + rail_x_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3),
+            y + rail_y_3 * tcp_displacement / sqrt(rail_x_3 * rail_x_3 + rail_y_3 * rail_y_3),
+            z,
+            0.0,
+            0.0,
+            1.0,
+            rail_x_1,
+            rail_y_1,
+            0.0,
+            rail_x_2,
+            rail_y_2,
+            0.0,
+            rail_x_3,
+            rail_y_3,
+            0.0,
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

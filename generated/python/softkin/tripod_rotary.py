@@ -113,10 +113,12 @@ class Constants:
         quotient_in_margin_rods_coplanar = 1.0 / (arm_length_2 * arm_length_2 * arm_length_2)
         sum_in_slope_1_by_x = 2.0 * fixed_length_1 - 2.0 * arm_1_radius
         arm_length_1_times_root_of_3 = arm_length_1 * root_of_3
+        arm_length_1_squared_times_2 = 2.0 * arm_length_1 * arm_length_1
+        product_in_rate_of_slope_2_by_a2 = arm_length_1 * arm_length_1 * (0.5 + 0.5 * root_of_3 * root_of_3)
         self.arm_length_1, self.arm_length_2, self.arm_1_radius = arm_length_1, arm_length_2, arm_1_radius
-        self.offset_a1, self.offset_a2, self.offset_a3 = offset_a1, offset_a2, offset_a3
-        self.min_type2_margin, self.fixed_length_1 = min_type2_margin, fixed_length_1
-        self.fixed_length_2, self.assembly_sign = fixed_length_2, assembly_sign
+        self.stewart_radius, self.distance, self.offset_a1 = stewart_radius, distance, offset_a1
+        self.offset_a2, self.offset_a3, self.min_type2_margin = offset_a2, offset_a3, min_type2_margin
+        self.fixed_length_1, self.fixed_length_2, self.assembly_sign = fixed_length_1, fixed_length_2, assembly_sign
         self.sin_max_angle_ball_joint, self.root_of_3 = sin_max_angle_ball_joint, root_of_3
         self.product_in_normal_divisor, self.arm_length_2_squared = product_in_normal_divisor, arm_length_2_squared
         self.arm_length_2_squared_times_rounding = arm_length_2_squared_times_rounding
@@ -133,6 +135,8 @@ class Constants:
         self.root_of_3_times_half_by_arm_length_2 = root_of_3_times_half_by_arm_length_2
         self.quotient_in_margin_rods_coplanar = quotient_in_margin_rods_coplanar
         self.sum_in_slope_1_by_x, self.arm_length_1_times_root_of_3 = sum_in_slope_1_by_x, arm_length_1_times_root_of_3
+        self.arm_length_1_squared_times_2 = arm_length_1_squared_times_2
+        self.product_in_rate_of_slope_2_by_a2 = product_in_rate_of_slope_2_by_a2
 
 
 class TripodRotary(OffsetKinematics):
@@ -144,7 +148,7 @@ class TripodRotary(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Tripod_Rotary"
-    KEY = "tripod_rotary 402d5839eb4e6bd1"
+    KEY = "tripod_rotary 6c9da790a9736e9f"
     AXES = (
         Axis(
             name="A1",
@@ -223,6 +227,26 @@ class TripodRotary(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    LINES = (
+        (12, 0, "A1"),
+        (12, 2, "A1"),
+        (15, 4, "A2"),
+        (15, 6, "A2"),
+        (18, 8, "A3"),
+        (18, 10, "A3"),
+        (0, 1, ""),
+        (2, 3, ""),
+        (4, 5, ""),
+        (6, 7, ""),
+        (8, 9, ""),
+        (10, 11, ""),
+        (1, -1, ""),
+        (3, -1, ""),
+        (5, -1, ""),
+        (7, -1, ""),
+        (9, -1, ""),
+        (11, -1, ""),
+    )
     DISTANCE_AXES = (0, 1, 2)
 
     arm_length_1: float
@@ -903,6 +927,291 @@ class TripodRotary(OffsetKinematics):
             ),
         )
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self._constants
+        arm_1_radius, arm_1_radius_minus_fixed_length_1 = k.arm_1_radius, k.arm_1_radius_minus_fixed_length_1
+        arm_length_1, arm_length_1_squared_times_2 = k.arm_length_1, k.arm_length_1_squared_times_2
+        arm_length_1_times_root_of_3 = k.arm_length_1_times_root_of_3
+        arm_length_1_times_root_of_3_times_half = k.arm_length_1_times_root_of_3_times_half
+        arm_length_2_squared = k.arm_length_2_squared
+        arm_length_2_squared_times_rounding, assembly_sign = k.arm_length_2_squared_times_rounding, k.assembly_sign
+        fixed_length_1, fixed_length_2, half_arm_length_1 = k.fixed_length_1, k.fixed_length_2, k.half_arm_length_1
+        offset_a1, offset_a2, offset_a3 = k.offset_a1, k.offset_a2, k.offset_a3
+        product_in_determinant_divisor = k.product_in_determinant_divisor
+        product_in_normal_divisor = k.product_in_normal_divisor
+        product_in_rate_of_slope_2_by_a2, root_of_3 = k.product_in_rate_of_slope_2_by_a2, k.root_of_3
+        sum_in_pivot_2_x, sum_in_pivot_2_y = k.sum_in_pivot_2_x, k.sum_in_pivot_2_y
+        sum_in_slope_1_by_x, twice_arm_length_1 = k.sum_in_slope_1_by_x, k.twice_arm_length_1
+        if not reasonable(speed_a1, speed_a2, speed_a3, axis_a1, axis_a2, axis_a3):
+            return Status.BAD_INPUT
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_y = sum_in_pivot_2_y - arm_length_1_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        cos_a3 = cos(a3)
+        pivot_3_y = arm_length_1_times_root_of_3_times_half * cos_a3 - sum_in_pivot_2_y
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        arm_length_1_times_sin_a1 = arm_length_1 * sin_a1
+        pivot_1_z = fixed_length_2 - arm_length_1_times_sin_a1
+        sin_a2 = sin(a2)
+        arm_length_1_times_sin_a2 = arm_length_1 * sin_a2
+        pivot_2_z = fixed_length_2 - arm_length_1_times_sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        sin_a3 = sin(a3)
+        arm_length_1_times_sin_a3 = arm_length_1 * sin_a3
+        pivot_3_z = fixed_length_2 - arm_length_1_times_sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        cos_a1 = cos(a1)
+        # rod 1: centre about which it swings
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1 * cos_a1
+        pivot_2_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        pivot_3_x = sum_in_pivot_2_x + half_arm_length_1 * cos_a3  # rod 3: centre about which it swings
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
+        # the centres coincide or lie on a line: nothing holds the plate
+        if not (normal_square > product_in_normal_divisor):
+            return Status.IMPOSSIBLE
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        one_by_normal_square = 1.0 / normal_square
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = arm_length_2_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # the rods do not meet
+        if not (height_square >= -arm_length_2_squared_times_rounding):
+            return Status.IMPOSSIBLE
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + twice_arm_length_1 * cos_a1 - sum_in_slope_1_by_x
+        y = foot_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        z_minus_fixed_length_2 = z - fixed_length_2
+        twice_z_minus_fixed_length_2 = 2.0 * z_minus_fixed_length_2
+        slope_1_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a1
+        arm_length_1_times_cos_a2 = arm_length_1 * cos_a2
+        product_in_slope_2_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a2) * root_of_3
+        slope_2_by_y = slope_1_by_y - product_in_slope_2_by_y
+        slope_2_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a2
+        arm_length_1_times_cos_a3 = arm_length_1 * cos_a3
+        product_in_slope_3_by_y = (fixed_length_1 - arm_1_radius - arm_length_1_times_cos_a3) * root_of_3
+        slope_3_by_y = product_in_slope_3_by_y + slope_1_by_y
+        slope_3_by_z = twice_z_minus_fixed_length_2 + twice_arm_length_1 * sin_a3
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        sum_in_slope_2_by_x = arm_1_radius_minus_fixed_length_1 - twice_x
+        slope_2_by_x = -arm_length_1_times_cos_a2 - sum_in_slope_2_by_x
+        slope_3_by_x = -arm_length_1_times_cos_a3 - sum_in_slope_2_by_x
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        # nothing controls the plate
+        if not (abs(determinant) > product_in_determinant_divisor):
+            return Status.IMPOSSIBLE
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        one_by_determinant_divisor = 1.0 / determinant
+        cos_a3_times_twice_arm_length_1 = twice_arm_length_1 * cos_a3
+        sum_in_slope_3_by_a3 = arm_length_1_times_sin_a3 + z_minus_fixed_length_2
+        sum_in_slope_3_by_a3_2 = (x - pivot_3_x) * arm_length_1 + arm_length_1_times_root_of_3 * (
+            0.5 * product_in_slope_3_by_y + y
+        )
+        slope_3_by_a3 = sum_in_slope_3_by_a3 * cos_a3_times_twice_arm_length_1 + sum_in_slope_3_by_a3_2 * sin_a3
+        speed_a3_times_slope_3_by_a3 = slope_3_by_a3 * speed_a3
+        cos_a2_times_twice_arm_length_1 = twice_arm_length_1 * cos_a2
+        sum_in_slope_2_by_a2 = arm_length_1_times_sin_a2 + z_minus_fixed_length_2
+        sum_in_slope_2_by_a2_2 = (x - pivot_2_x) * arm_length_1 + arm_length_1_times_root_of_3 * (
+            0.5 * product_in_slope_2_by_y - y
+        )
+        slope_2_by_a2 = sum_in_slope_2_by_a2 * cos_a2_times_twice_arm_length_1 + sum_in_slope_2_by_a2_2 * sin_a2
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        x_minus_pivot_1_x = x - pivot_1_x
+        sum_in_slope_1_by_a1 = arm_length_1_times_sin_a1 + z_minus_fixed_length_2
+        slope_1_by_a1 = twice_arm_length_1 * (sum_in_slope_1_by_a1 * cos_a1 - x_minus_pivot_1_x * sin_a1)
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        sum_in_velocity_x = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        sum_in_velocity_x_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x + rate_of_cos_a1 * twice_arm_length_1
+        rate_of_cos_a3 = -speed_a3 * sin_a3
+        rate_of_slope_3_by_y = rate_of_slope_1_by_y - arm_length_1_times_root_of_3 * rate_of_cos_a3
+        twice_velocity_z = 2.0 * velocity_z
+        rate_of_sin_a3 = speed_a3 * cos_a3
+        rate_of_slope_3_by_z = twice_velocity_z + rate_of_sin_a3 * twice_arm_length_1
+        rate_of_slope_3_by_x = twice_velocity_x - arm_length_1 * rate_of_cos_a3
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        rate_of_slope_1_by_z = twice_velocity_z + rate_of_sin_a1 * twice_arm_length_1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_2_by_y = rate_of_slope_1_by_y + arm_length_1_times_root_of_3 * rate_of_cos_a2
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_2_by_z = twice_velocity_z + rate_of_sin_a2 * twice_arm_length_1
+        rate_of_slope_2_by_x = twice_velocity_x - arm_length_1 * rate_of_cos_a2
+        sum_in_rate_of_determinant = (
+            rate_of_slope_1_by_x * sum_in_determinant
+            + rate_of_slope_1_by_y * sum_in_determinant_2
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_x * sum_in_velocity_x
+            - rate_of_slope_2_by_y * sum_in_velocity_y
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+        )
+        rate_of_determinant = (
+            sum_in_rate_of_determinant
+            - rate_of_slope_3_by_x * sum_in_velocity_x_2
+            - rate_of_slope_3_by_y * sum_in_velocity_y_2
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        shared_product_5 = (
+            slope_3_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_product_6 = one_by_determinant_divisor * (
+            slope_2_by_z * speed_a3_times_slope_3_by_a3 - slope_3_by_z * speed_a2_times_slope_2_by_a2
+        )
+        product_in_rate_of_slope_2_by_a2_2 = arm_length_1_times_root_of_3 * velocity_y
+        arm_length_1_times_velocity_x = arm_length_1 * velocity_x
+        rate_of_slope_3_by_a3 = (
+            velocity_z * cos_a3_times_twice_arm_length_1
+            + (sum_in_slope_3_by_a3 * twice_arm_length_1 - product_in_rate_of_slope_2_by_a2 * sin_a3) * rate_of_cos_a3
+            + (sum_in_slope_3_by_a3_2 + arm_length_1_squared_times_2 * cos_a3) * rate_of_sin_a3
+            + (arm_length_1_times_velocity_x + product_in_rate_of_slope_2_by_a2_2) * sin_a3
+        )
+        speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3 * speed_a3
+        rate_of_slope_2_by_a2 = (
+            velocity_z * cos_a2_times_twice_arm_length_1
+            + (sum_in_slope_2_by_a2 * twice_arm_length_1 - product_in_rate_of_slope_2_by_a2 * sin_a2) * rate_of_cos_a2
+            + (sum_in_slope_2_by_a2_2 + arm_length_1_squared_times_2 * cos_a2) * rate_of_sin_a2
+            + (arm_length_1_times_velocity_x - product_in_rate_of_slope_2_by_a2_2) * sin_a2
+        )
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        rate_of_slope_1_by_a1 = (
+            (sum_in_slope_1_by_a1 * twice_arm_length_1 - arm_length_1_squared_times_2 * sin_a1) * rate_of_cos_a1
+            + (arm_length_1_squared_times_2 * cos_a1 - twice_arm_length_1 * x_minus_pivot_1_x) * rate_of_sin_a1
+            + twice_arm_length_1 * (velocity_z * cos_a1 - velocity_x * sin_a1)
+        )
+        speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1 * speed_a1
+        shared_product_10 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        shared_product_11 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        shared_product_12 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        shared_product = one_by_determinant_divisor * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_2 = one_by_determinant_divisor * (
+            slope_1_by_z * speed_a2_times_slope_2_by_a2 - slope_2_by_z * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_3 = (
+            slope_3_by_y * speed_a1_times_slope_1_by_a1 - slope_1_by_y * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_product_4 = (
+            slope_3_by_z * speed_a1_times_slope_1_by_a1 - slope_1_by_z * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_sum = (
+            rate_of_slope_1_by_z * shared_product_5
+            + rate_of_slope_2_by_y * shared_product_4
+            + rate_of_slope_3_by_y * shared_product_2
+            - rate_of_slope_2_by_z * shared_product_3
+            - rate_of_slope_3_by_z * shared_product
+        )
+        shared_product_7 = one_by_determinant_divisor * (
+            slope_1_by_x * speed_a2_times_slope_2_by_a2 - slope_2_by_x * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_8 = one_by_determinant_divisor * (
+            slope_1_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_9 = (
+            slope_3_by_x * speed_a2_times_slope_2_by_a2 - slope_2_by_x * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_sum_2 = (
+            rate_of_slope_1_by_z * shared_product_9
+            + rate_of_slope_2_by_x * shared_product_4
+            + rate_of_slope_2_by_z * shared_product_8
+            + rate_of_slope_3_by_x * shared_product_2
+            - rate_of_slope_3_by_z * shared_product_7
+        )
+        shared_sum_3 = (
+            rate_of_slope_1_by_y * shared_product_9
+            + rate_of_slope_2_by_x * shared_product_3
+            + rate_of_slope_2_by_y * shared_product_8
+            + rate_of_slope_3_by_x * shared_product
+            - rate_of_slope_3_by_y * shared_product_7
+        )
+        return (
+            shared_product_10
+            - shared_sum
+            - rate_of_slope_1_by_y * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant * velocity_x,
+            shared_product_11
+            + shared_sum_2
+            + rate_of_slope_1_by_x * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant * velocity_y,
+            shared_product_12
+            + rate_of_slope_1_by_x * shared_product_5
+            - shared_sum_3
+            - one_by_determinant_divisor * rate_of_determinant * velocity_z,
+        )
+
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
@@ -1249,6 +1558,157 @@ class TripodRotary(OffsetKinematics):
         span_3_y = flange_y + sum_in_pivot_2_y
         branch_knee_3 = -(2.0 * span_1_z * cos_a3 + (span_2_x + root_of_3 * span_3_y) * sin_a3) * half_by_arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _points(self, axes: Reals, position: Vector, rotation: Rotation) -> Reals | Status:
+        """What is drawn: see `LINES`."""
+        axis_a1, axis_a2, axis_a3 = axes
+        x, y, z = position
+        k = self._constants
+        arm_1_radius, arm_length_1, arm_length_2, distance = k.arm_1_radius, k.arm_length_1, k.arm_length_2, k.distance
+        offset_a1, offset_a2, offset_a3, stewart_radius = k.offset_a1, k.offset_a2, k.offset_a3, k.stewart_radius
+        a1 = DEGREE * (axis_a1 - offset_a1)
+        a2 = DEGREE * (axis_a2 - offset_a2)
+        a3 = DEGREE * (axis_a3 - offset_a3)
+        return (
+            -arm_1_radius - arm_length_1 * cos(a1),
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a1),
+            x - root(stewart_radius * stewart_radius - 0.25 * distance * distance),
+            y - 0.5 * distance,
+            z,
+            -arm_1_radius - arm_length_1 * cos(a1),
+            0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a1),
+            x - root(stewart_radius * stewart_radius - 0.25 * distance * distance),
+            0.5 * distance + y,
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a2) + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a2),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + y - 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a2) - 0.25 * sqrt(3.0) * distance,
+            -0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a2),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) - 0.25 * sqrt(3.0) * distance,
+            y - 0.25 * distance - 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a3) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + 0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a3),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + y + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0),
+            z,
+            0.5 * arm_1_radius + 0.5 * arm_length_1 * cos(a3) + 0.25 * sqrt(3.0) * distance,
+            0.5 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)) - 0.25 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * sin(a3),
+            x + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) + 0.25 * sqrt(3.0) * distance,
+            y + 0.5 * root(stewart_radius * stewart_radius - 0.25 * distance * distance) * sqrt(3.0) - 0.25 * distance,
+            z,
+            -arm_1_radius,
+            0.0,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            arm_length_1 * sin(a1) - arm_1_radius,
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a1),
+            -arm_1_radius,
+            -0.5 * distance,
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius,
+            -0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a2))
+            - 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius + 0.25 * sqrt(3.0) * distance - 0.5 * arm_length_1 * sin(a2),
+            0.25 * distance - 0.5 * sqrt(3.0) * (arm_1_radius - arm_length_1 * sin(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a2),
+            0.5 * arm_1_radius + 0.25 * sqrt(3.0) * distance,
+            0.25 * distance
+            - 0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a2))
+            - 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a2)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius,
+            0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a3))
+            + 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+            0.5 * arm_1_radius - 0.5 * arm_length_1 * sin(a3) - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance + 0.5 * sqrt(3.0) * (arm_1_radius - arm_length_1 * sin(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            )
+            - arm_length_1 * cos(a3),
+            0.5 * arm_1_radius - 0.25 * sqrt(3.0) * distance,
+            0.25 * distance
+            + 0.25 * sqrt(3.0) * (arm_1_radius - arm_length_1 * cos(a3))
+            + 0.25 * sqrt(3.0) * (arm_1_radius + arm_length_1 * cos(a3)),
+            root(
+                arm_length_2 * arm_length_2
+                - (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+                * (arm_1_radius + arm_length_1 - root(stewart_radius * stewart_radius - 0.25 * distance * distance))
+            ),
+        )
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""

@@ -73,11 +73,12 @@ class Constants:
         unmet_offset = abs(roll_axis_offset_y)  # part of the tool in directions that are not commanded
         tool_length_times_tool_side = tool_side * tool_length
         one_by_tool_side = 1.0 / tool_side
+        twice_tool_side = 2.0 * tool_side
         self.roll_axis_offset_x, self.roll_axis_offset_y = roll_axis_offset_x, roll_axis_offset_y
         self.roll_axis_offset_z, self.tool_side, self.offset_a = roll_axis_offset_z, tool_side, offset_a
         self.offset_b, self.unnoticed_shift, self.wrist_offset = offset_b, unnoticed_shift, wrist_offset
         self.unmet_offset, self.tool_length_times_tool_side = unmet_offset, tool_length_times_tool_side
-        self.one_by_tool_side = one_by_tool_side
+        self.one_by_tool_side, self.twice_tool_side = one_by_tool_side, twice_tool_side
 
 
 class Wrist2(OrientationKinematics):
@@ -89,7 +90,7 @@ class Wrist2(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist2"
-    KEY = "wrist2 10b9cd4ebc03c431"
+    KEY = "wrist2 23dde73c938515d9"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Yaw about Z", multi_turn=True),
         Axis(
@@ -362,6 +363,97 @@ class Wrist2(OrientationKinematics):
             (0.0, -sin_a_times_tool_side),
             (0.0, cos_a_times_tool_side),
             (1.0, 0.0),
+        )
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a, axis_b = axes
+        speed_a, speed_b = speeds
+        k = self._constants
+        offset_a, offset_b, tool_side, twice_tool_side = k.offset_a, k.offset_b, k.tool_side, k.twice_tool_side
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a, speed_b, axis_a, axis_b):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        b = DEGREE * (axis_b - offset_b)
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r31_at_b = -rate_of_sin_b * tool_side
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_cos_b = -sin(b) * speed_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        tool_side_times_speed_b = speed_b * tool_side
+        return (
+            rate_of_r31_at_b * speed_a
+            + tool_side_times_speed_b
+            * (
+                rate_of_r21_at_b * cos_a
+                + r21_at_b * rate_of_cos_a
+                - r11_at_b * rate_of_sin_a
+                - rate_of_r11_at_b * sin_a
+            ),
+            2.0 * rate_of_sin_a * tool_side_times_speed_b * sin_a + rate_of_cos_a * speed_b * twice_tool_side * cos_a,
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a, axis_b = axes
+        speed_a, speed_b = speeds
+        k = self._constants
+        offset_a, offset_b, roll_axis_offset_x = k.offset_a, k.offset_b, k.roll_axis_offset_x
+        roll_axis_offset_y, roll_axis_offset_z = k.roll_axis_offset_y, k.roll_axis_offset_z
+        tool_length_times_tool_side, tool_side = k.tool_length_times_tool_side, k.tool_side
+        # inputs must be numbers, and of reasonable size
+        if not reasonable(speed_a, speed_b, axis_a, axis_b):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_y_at_b = rate_of_sin_a * roll_axis_offset_x
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * tool_side
+        rate_of_y = rate_of_y_at_b + rate_of_cos_a * roll_axis_offset_y + rate_of_r23_at_b * tool_length_times_tool_side
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_z = rate_of_cos_b * tool_length_times_tool_side
+        rate_of_x_at_b = rate_of_cos_a * roll_axis_offset_x
+        rate_of_r13_at_b = tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = rate_of_x_at_b + rate_of_r13_at_b * tool_length_times_tool_side - rate_of_sin_a * roll_axis_offset_y
+        y_at_b = roll_axis_offset_x * sin_a
+        sin_b_times_tool_side = tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = y_at_b + roll_axis_offset_y * cos_a + r23_at_b * tool_length_times_tool_side
+        x_at_b = roll_axis_offset_x * cos_a
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = x_at_b + r13_at_b * tool_length_times_tool_side - roll_axis_offset_y * sin_a
+        z = roll_axis_offset_z + tool_length_times_tool_side * cos_b
+        z_minus_roll_axis_offset_z = z - roll_axis_offset_z
+        tool_side_times_speed_b = speed_b * tool_side
+        return (
+            tool_side_times_speed_b * (rate_of_z * cos_a + rate_of_cos_a * z_minus_roll_axis_offset_z)
+            - rate_of_y * speed_a,
+            rate_of_x * speed_a
+            + (rate_of_sin_a * z_minus_roll_axis_offset_z + rate_of_z * sin_a) * tool_side_times_speed_b,
+            tool_side_times_speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_a
+                + (x_at_b - x) * rate_of_cos_a
+                + (y_at_b - y) * rate_of_sin_a
+                + (rate_of_y_at_b - rate_of_y) * sin_a
+            ),
+            -rate_of_sin_a * tool_side_times_speed_b,
+            rate_of_cos_a * tool_side_times_speed_b,
+            0.0,
         )
 
     def _image(self) -> Image | Status:

@@ -75,7 +75,7 @@ class Wrist3(OrientationKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Wrist3"
-    KEY = "wrist3 a78696a8aebed404"
+    KEY = "wrist3 99cd6d8df5994054"
     AXES = (
         Axis(name="A", kind="rotary", unit="deg", meaning="Turn about Z", multi_turn=True),
         Axis(name="B", kind="rotary", unit="deg", meaning="Turn about the turned -Y", multi_turn=True),
@@ -345,6 +345,89 @@ class Wrist3(OrientationKinematics):
             (0.0, sin_a, r13_at_b),
             (0.0, -cos_a, r23_at_b),
             (1.0, 0.0, cos_b),
+        )
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a, axis_b, axis_c = axes
+        speed_a, speed_b, speed_c = speeds
+        k = self._constants
+        offset_a, offset_b, offset_c, tool_offset_x = k.offset_a, k.offset_b, k.offset_c, k.tool_offset_x
+        tool_offset_y, tool_offset_z = k.tool_offset_y, k.tool_offset_z
+        if not reasonable(speed_a, speed_b, speed_c, axis_a, axis_b, axis_c):
+            return Status.BAD_INPUT
+        a = DEGREE * (axis_a - offset_a)
+        sin_a = sin(a)
+        b = DEGREE * (axis_b - offset_b)
+        sin_b = sin(b)
+        r23_at_b = -sin_a * sin_b
+        cos_a = cos(a)
+        cos_b = cos(b)
+        r21_at_b = cos_b * sin_a
+        c = DEGREE * (axis_c - offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * tool_offset_x + r22_at_c * tool_offset_y + r23_at_b * tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = tool_offset_z * cos_b + r31_at_c * tool_offset_x + r32_at_c * tool_offset_y
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = -rate_of_sin_a * sin_b - rate_of_sin_b * sin_a
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r21_at_c = (
+            rate_of_sin_c * cos_a + rate_of_r21_at_b * cos_c + r21_at_b * rate_of_cos_c + rate_of_cos_a * sin_c
+        )
+        rate_of_r22_at_c = (
+            rate_of_cos_c * cos_a + rate_of_cos_a * cos_c - r21_at_b * rate_of_sin_c - rate_of_r21_at_b * sin_c
+        )
+        rate_of_y = (
+            rate_of_r21_at_c * tool_offset_x + rate_of_r22_at_c * tool_offset_y + rate_of_r23_at_b * tool_offset_z
+        )
+        rate_of_r31_at_c = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_r32_at_c = -rate_of_sin_b * sin_c - rate_of_sin_c * sin_b
+        rate_of_z = rate_of_cos_b * tool_offset_z + rate_of_r31_at_c * tool_offset_x + rate_of_r32_at_c * tool_offset_y
+        r13_at_b = -cos_a * sin_b
+        r11_at_b = cos_a * cos_b
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * tool_offset_x + r12_at_c * tool_offset_y + r13_at_b * tool_offset_z
+        rate_of_r13_at_b = -rate_of_sin_b * cos_a - rate_of_cos_a * sin_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r11_at_c = (
+            rate_of_r11_at_b * cos_c + r11_at_b * rate_of_cos_c - rate_of_sin_a * sin_c - rate_of_sin_c * sin_a
+        )
+        rate_of_r12_at_c = (
+            -rate_of_sin_a * cos_c - r11_at_b * rate_of_sin_c - rate_of_cos_c * sin_a - rate_of_r11_at_b * sin_c
+        )
+        rate_of_x = (
+            rate_of_r11_at_c * tool_offset_x + rate_of_r12_at_c * tool_offset_y + rate_of_r13_at_b * tool_offset_z
+        )
+        shared_sum = rate_of_r13_at_b * speed_c + rate_of_sin_a * speed_b
+        shared_sum_2 = rate_of_r23_at_b * speed_c - rate_of_cos_a * speed_b
+        rate_of_cos_b_times_speed_c = rate_of_cos_b * speed_c
+        speed_a_plus_cos_b_times_speed_c = speed_a + speed_c * cos_b
+        shared_sum_3 = r23_at_b * speed_c - speed_b * cos_a
+        shared_sum_4 = r13_at_b * speed_c + speed_b * sin_a
+        return (
+            rate_of_z * shared_sum_3
+            + shared_sum_2 * z
+            - rate_of_cos_b_times_speed_c * y
+            - rate_of_y * speed_a_plus_cos_b_times_speed_c,
+            rate_of_cos_b_times_speed_c * x
+            + rate_of_x * speed_a_plus_cos_b_times_speed_c
+            - rate_of_z * shared_sum_4
+            - shared_sum * z,
+            rate_of_y * shared_sum_4 + shared_sum * y - rate_of_x * shared_sum_3 - shared_sum_2 * x,
+            shared_sum,
+            shared_sum_2,
+            rate_of_cos_b_times_speed_c,
         )
 
     def _image(self) -> Image | Status:

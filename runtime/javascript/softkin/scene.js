@@ -85,9 +85,12 @@ function chainOf({ factors, loops = [] }, values) {
       const slide = { joints: [loop.cylinder], kind: "slide", at: times(0.5, plus(...line)), axis };
       joints.push({ ...slide, body: bodies.length - 1, travel: sizeOf(minus(line[1], line[0])) });
     }
-    const arms = [start, tip].flatMap((pins) => pins.slice(1).map((pin, i) => [pins[i], pin]));
-    const lever = { name: `levers of ${loop.name}`, kind: "link", joints: loop.joints, frame, lines: arms };
-    if (arms.length) bodies.push(lever);
+    for (const [word, pins] of [["crank", start], ["lever", tip]]) {
+      const lines = pins.slice(1).map((pin, i) => [pins[i], pin]).filter((arm) => sizeOf(minus(arm[1], arm[0])) > TINY);
+      if (!lines.length) continue;
+      const own = { position: lines[0][0], rotation: frameAlong(unit(minus(lines[0][1], lines[0][0]))) };
+      bodies.push({ name: `${word} beside the ${loop.name}`, kind: "link", joints: loop.joints, frame: own, lines });
+    }
   }
   return { bodies, joints };
 }

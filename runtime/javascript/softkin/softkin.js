@@ -20,7 +20,7 @@ import {
 import { COINCIDENT, MEANINGS, Status, TIE } from "./constants.js";
 import { bytesOf, numbersOf, parametersOf, poseOf, refuseParameters } from "./input.js";
 import { constantsOf } from "./limits.js";
-import { isReasonable } from "./numbers.js";
+import { isReasonable, solveLinear } from "./numbers.js";
 import { Refusal, inWords, refuse } from "./refusal.js";
 import { findRotation } from "./rotation.js";
 import { everyRoot } from "./roots.js";
@@ -148,6 +148,35 @@ export class Machine {
   }
 
   /**
+   * The velocities of the axes for a twist of the frame, both per radian: the inverse of the Jacobian. An axis that is
+   * held does not move.
+   *
+   * @param {number[]} axes
+   * @param {number[]} twist - rows as in `description.jacobianRows`
+   * @param {Frame} [start] - the frame that the axes have, as in `forward`
+   * @returns {{status: number, velocities: number[]}} Refused: BAD_INPUT, IMPOSSIBLE at a singular pose
+   */
+  axisVelocities(axes, twist, start) {
+    const wanted = this._rows(twist, "twist");
+    const velocities = wanted instanceof Refusal ? wanted : this._solved(axes, wanted, start);
+    return velocities instanceof Refusal ? velocities.told() : { status: Status.OK, velocities };
+  }
+
+  /**
+   * The accelerations of the axes that give the frame an acceleration, per radian.
+   *
+   * @param {number[]} axes
+   * @param {number[]} velocities - those that the axes have, as `axisVelocities` finds them
+   * @param {number[]} twistRate - the rate of the twist; zeros on a straight line at constant speed
+   * @param {Frame} [start] - the frame that the axes have, as in `forward`
+   * @returns {{status: number, accelerations: number[]}} Refused: as `axisVelocities`
+   */
+  axisAccelerations(axes, velocities, twistRate, start) {
+    const accelerations = this._accelerations(axes, velocities, twistRate, start);
+    return accelerations instanceof Refusal ? accelerations.told() : { status: Status.OK, accelerations };
+  }
+
+  /**
    * The singularity margins at axis values. Axis values that allow no pose are singular, and have none.
    *
    * @param {number[]} axes
@@ -200,20 +229,51 @@ export class Machine {
     return { status: Status.OK, ...sceneOf(this.description.parts, found, position, rotation) };
   }
 
+  _accelerations(axes, velocities, twistRate, start) {
+    const wanted = this._rows(twistRate, "twistRate");
+    if (wanted instanceof Refusal) return wanted;
+    const [values, speeds] = [this._axes(axes), numbersOf(velocities, this.description.axes.length, "velocities")];
+    if (values instanceof Refusal || speeds instanceof Refusal) return values instanceof Refusal ? values : speeds;
+    const bias = this._asks("bias", values, start, speeds);
+    return bias instanceof Refusal ? bias : this._solved(axes, wanted.map((value, i) => value - bias[i]), start);
+  }
+
+  /** Numbers for the rows of the Jacobian. */
+  _rows(values, what) {
+    const found = numbersOf(values, this.description.jacobianRows.length, what);
+    return found instanceof Refusal || isReasonable(...found) ? found : refuse(Status.BAD_INPUT);
+  }
+
+  /** The values of the axes whose product with the Jacobian is wanted. */
+  _solved(axes, wanted, start) {
+    const values = this._axes(axes);
+    const rows = values instanceof Refusal ? values : this._asks("jacobian", values, start);
+    if (rows instanceof Refusal) return rows;
+    const moving = this.description.axes.map(({ isHeld }, i) => (isHeld ? -1 : i)).filter((i) => i >= 0);
+    const matrix = rows.map((row) => moving.map((i) => row[i]));
+    const solved = rows.length ? solveLinear(matrix, wanted.map((value) => [value])) : [1];
+    if (this.singularity(axes, start).isSingular || solved[0] === 0) {
+      return refuse(Status.IMPOSSIBLE, "the pose is singular");
+    }
+    const found = values.map(() => 0);
+    rows.forEach((_, i) => { found[moving[i]] = solved[i + 1]; });
+    return found;
+  }
+
   _axes(axes) {
     return numbersOf(axes, this.description.axes.length, "axes");
   }
 
-  /** The answer of a program for axis values, whose forward kinematics begins at a start. */
-  _asks(program, values, start) {
+  /** The answer of a program for axis values and more, whose forward kinematics begins at a start. */
+  _asks(program, values, start, ...more) {
     const isAsked = this.description.startsForward && start !== undefined && start !== null;
-    if (!isAsked) return this._programs[program](this._k, values);
+    if (!isAsked) return this._programs[program](this._k, values, ...more);
     const pose = poseOf(start, true);
     const rotation = pose instanceof Refusal ? pose : findRotation(null, pose[1]);
     if (rotation instanceof Refusal) return rotation;
     const there = [["x", "y", "z"].map((name, i) => [`start_${name}`, pose[0][i]])];
     rotation.forEach((row, i) => there.push(row.map((value, k) => [`start_r${i + 1}${k + 1}`, value])));
-    return this._programs[program]({ ...this._k, ...Object.fromEntries(there.flat()) }, values);
+    return this._programs[program]({ ...this._k, ...Object.fromEntries(there.flat()) }, values, ...more);
   }
 
   /** What an inverse is asked: position and rotation as given, and the reference. */
@@ -294,7 +354,7 @@ export class Machine {
     return this.description.periodAxes.map((index, i) => turnOf(sizes[i] * axes[index]));
   }
 
-  /** Every slot of a searched machine: all roots of a scan for each choice of signs that a scan knows. */
+  /** Every slot of a searched machine: all roots of a search for each choice of signs that it knows. */
   _searched(every, given) {
     const { sides, branchCount } = this.description;
     const found = new Map();

@@ -9,6 +9,7 @@ import numpy as np
 from softkin._array import Codes, Matrix, Programs, Real, Reals, Rotation, Signs, Turns, Vector
 from softkin._core import TWIST
 from softkin._types import Status
+from softkin._vectors import on_flange, rates
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -88,6 +89,24 @@ class CoupledPrograms(Programs):
         matrix = tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
         return matrix, both(both(status, outcome), both(found, last))
 
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the end point at constant speeds of the axes: that of the flange, and that on it."""
+        position, orientation = self.parts
+        first, second, own_speeds = axes[: self.count], axes[self.count :], speeds[self.count :]
+        carrier, status = all_six(position, self.first, first)
+        own, outcome = all_six(orientation, self.second, second)
+        carried, third = bias_of_all_six(position, self.first, first, speeds[: self.count])
+        inner, fourth = bias_of_all_six(orientation, self.second, second, own_speeds)
+        (_, flange, _), found = self.first.forward(first)
+        (end, _, _), last = self.second.forward(second)
+        spin = rates(carrier[3:], speeds[: self.count])
+        moving = on_flange(carried, spin, flange, end, (own, own_speeds, inner))
+        return moving, both(both(both(status, outcome), both(third, fourth)), both(found, last))
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The same: the Jacobian has all six rows."""
+        return self.bias(axes, speeds)
+
     def singularity(self, axes: Reals) -> tuple[Reals, Codes]:
         """The margins of both parts."""
         carrier, status = self.first.singularity(axes[: self.count])
@@ -120,6 +139,15 @@ def all_six(mechanism: Mechanism, programs: Programs, axes: Reals) -> tuple[Matr
         known = dict(zip(mechanism.JACOBIAN_ROWS, rows, strict=True))
         return tuple(known.get(row, (0.0,) * len(axes)) for row in TWIST), status
     return programs.twist(axes)
+
+
+def bias_of_all_six(mechanism: Mechanism, programs: Programs, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+    """The acceleration of all six rows of the twist at constant speeds of the axes."""
+    if not mechanism._turns_unseen():
+        rows, status = programs.bias(axes, speeds)
+        known = dict(zip(mechanism.JACOBIAN_ROWS, rows, strict=True))
+        return tuple(known.get(row, 0.0) for row in TWIST), status
+    return programs.twist_bias(axes, speeds)
 
 
 def both(status: Codes, later: Codes) -> Codes:

@@ -55,6 +55,12 @@ class CalibratedLoop(Calibrated):
     def _twist(self, axes: Reals) -> Matrix | Status:
         return self._gained(self.part._twist(self._actual(axes)))
 
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        return self.part._bias(self._actual(axes), self._gained_speeds(speeds))
+
+    def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        return self.part._twist_bias(self._actual(axes), self._gained_speeds(speeds))
+
     def _gained(self, rows: Matrix | Status) -> Matrix | Status:
         """The rows of a Jacobian by the axes themselves."""
         if isinstance(rows, Status):

@@ -28,7 +28,7 @@ from softkin._types import (
     Turns,
     Vector,
 )
-from softkin._vectors import moved, plus, product, seen_from, transposed, turned
+from softkin._vectors import moved, on_flange, plus, product, rates, seen_from, transposed, turned
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -341,6 +341,21 @@ class Coupled(Mechanism):
         columns = [moved(column, arm) for column in zip(*carrier, strict=True)]
         columns += [(*turned(flange, c[:3]), *turned(flange, c[3:])) for c in zip(*own, strict=True)]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
+
+    def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
+        """The acceleration of the end point at constant speeds of the axes: that of the flange, and that on it."""
+        first, second = axes[: self._count], axes[self._count :]
+        own_speeds = speeds[self._count :]
+        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
+        flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
+        carried = self.position_part._twist_bias(first, speeds[: self._count])
+        inner = self.orientation_part._twist_bias(second, own_speeds)
+        for part in (carrier, own, flange, end, carried, inner):
+            if isinstance(part, Status):
+                return part
+        assert not (isinstance(carrier, Status) or isinstance(own, Status) or isinstance(carried, Status))
+        assert not (isinstance(flange, Status) or isinstance(end, Status) or isinstance(inner, Status))
+        return on_flange(carried, rates(carrier[3:], speeds[: self._count]), flange, end[0], (own, own_speeds, inner))
 
     def _image(self) -> Image | Status:
         return self._orientations

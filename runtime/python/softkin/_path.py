@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import floor
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from softkin._configuration import slots
 from softkin._frame import Frame
@@ -23,7 +23,10 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from softkin._core import Mechanism
+    from softkin._timed import Timed
 
 _SMOOTH = 1.0 / 36.0
 """A share of a full turn: where an axis turns further in one step, the step is halved."""
@@ -80,6 +83,14 @@ class Path:
         """Whether it reaches its last frame."""
         return self.stop is None
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """The axis values of every sample (N, n)."""
+        import numpy as np
+
+        if copy is False:
+            raise ValueError("a path is no array: its axis values are a copy")
+        return np.array(self.axes, dtype or np.float64)
+
     def __repr__(self) -> str:
         """The machine, the number of samples, and where the path stops."""
         end = f"stops at {self.stop.place:.6g}: {self.stop.refusal.in_words}" if self.stop else "reaches its last frame"
@@ -97,21 +108,55 @@ class Path:
         duration: the seconds that each line takes, at constant speed. At a corner the speed on the line that ends
         there. Central differences over 1e-5 of a line, where the way before and behind is free.
         """
-        found = []
-        last = self.places[-1] if self.places else 0.0
-        for place, axes in zip(self.places, self.axes, strict=True):
-            line = min(max(_line(place), 0), max(len(self.corners) - 2, 0))
-            first, second = max(place - _APART, float(line)), min(place + _APART, line + 1.0, last)
-            if not second > first:
-                found.append((0.0,) * len(axes))
-                continue
-            before, behind = (_solved(self, at, axes) for at in (first, second))
-            if isinstance(before, Diagnosis) or isinstance(behind, Diagnosis):
-                found.append(tuple([float("nan")] * len(axes)))
-                continue
-            time = (second - first) * duration
-            found.append(tuple([(b - a) / time for a, b in zip(before, behind, strict=True)]))
-        return tuple(found)
+        lines = (min(max(line_of(place), 0), max(len(self.corners) - 2, 0)) for place in self.places)
+        return tuple(self._velocity(k, line, duration) for k, line in enumerate(lines))
+
+    def _velocity(self, sample: int, line: int, duration: float = 1.0) -> Reals:
+        """The speeds at a sample that belongs to a line."""
+        place, axes = self.places[sample], self.axes[sample]
+        first, second = max(place - _APART, float(line)), min(place + _APART, line + 1.0, self.places[-1])
+        if not second > first:
+            return (0.0,) * len(axes)
+        before, behind = (solved(self, at, axes) for at in (first, second))
+        if isinstance(before, Diagnosis) or isinstance(behind, Diagnosis):
+            return (float("nan"),) * len(axes)
+        time = (second - first) * duration
+        return tuple([(b - a) / time for a, b in zip(before, behind, strict=True)])
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the axis values along the path with matplotlib, with stretches near a singularity, and where it stops.
+
+        ax: the axes of matplotlib to draw in; None makes a figure. Returns these axes. Raises ImportError without
+        matplotlib.
+        """
+        from softkin import _plot
+
+        return _plot.path(self, ax)
+
+    def timed(self, limits: Mapping[str, Sequence[float]], step: float = 0.01) -> Timed:
+        """The path in time, as fast as the limits of the axes allow: at rest at every corner.
+
+        limits: for every axis by name its highest speed, per second, and acceleration, per second squared, in the unit
+        of the axis; a third number, the jerk, is not read. step: the seconds from one time of the result to the next.
+        The limits are held at four places between two samples. Raises UNREACHABLE for a path that stops, IMPOSSIBLE
+        where an axis has no speed, BAD_INPUT for other limits, ImportError without toppra and SciPy.
+        """
+        from softkin import _timed
+
+        return _timed.along(self, limits, step)
+
+    def feeds(self, velocities: Numbers | None = None, accelerations: Numbers | None = None) -> Reals:
+        """The largest constant speed of the tool that the limits of the axes allow at every sample.
+
+        velocities, accelerations: the largest size that each may have, one positive number for each axis, per second in
+        the unit of the axis; None for no limit. The speed is in lengths a second, of a line that only turns in degrees
+        a second; the smallest one is what the whole path may be driven with. Infinite where no axis moves or no limit
+        is given, NaN where the way before and behind is not free. At a corner the speed on the line that ends there.
+        Raises BAD_INPUT for limits that are not positive.
+        """
+        from softkin import _feeds
+
+        return _feeds.along(self, velocities, accelerations)
 
     def fastest(self, duration: float = 1.0) -> Reals:
         """The highest speed of each axis at the samples, as a positive number: see `velocities`."""
@@ -119,7 +164,7 @@ class Path:
         return tuple([max(map(abs, column)) for column in columns])
 
 
-def _line(place: float) -> int:
+def line_of(place: float) -> int:
     """The number of the line at a place; a corner belongs to the line that ends there."""
     whole = floor(place)
     return whole - 1 if whole == place and whole > 0 else whole
@@ -130,7 +175,7 @@ def _frame(corners: Sequence[Frame], place: float) -> Frame:
     return corners[0] if line < 0 else between(corners[line], corners[line + 1], place - line)
 
 
-def _solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
+def solved(path: Path, place: float, near: Reals) -> Reals | Diagnosis:
     return _Follower(path.robot, path.corners, path.signs).solve(place, near)
 
 

@@ -55,6 +55,14 @@ class RadianPrograms(OrientationPrograms):
         """The twist of the frame by rows, per radian."""
         return self.part.twist(self._deg(axes))  # type: ignore[no-any-return]
 
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian at constant speeds, per radian."""
+        return self.part.bias(self._deg(axes), speeds)  # type: ignore[no-any-return]
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist at constant speeds, per radian."""
+        return self.part.twist_bias(self._deg(axes), speeds)  # type: ignore[no-any-return]
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         return self.part.projection(rotation)  # type: ignore[no-any-return]

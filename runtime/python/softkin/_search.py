@@ -1,4 +1,4 @@
-"""Mechanisms whose inverse is a root scan: a branch of a pose may have several solutions."""
+"""Mechanisms whose inverse is a root search: a branch of a pose may have several solutions."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from softkin._types import (
 
 _SAME = 2e-3
 """Axes that differ by less than this (degrees, lengths) are one solution of a branch: where the residual only touches
-zero, the scan finds the same root twice, and between two solutions of a branch there is one of another branch."""
+zero, the search finds the same root twice, and between two solutions of a branch there is one of another branch."""
 
 
 class SearchedInverse(Mechanism):
-    """A mechanism whose inverse scans one joint: for one branch, the solution nearest to the reference."""
+    """A mechanism whose inverse searches one joint: for one branch, the solution nearest to the reference."""
 
     __slots__ = ()
 
@@ -131,7 +131,7 @@ class SearchedInverse(Mechanism):
     def _search_given(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Values | Status:
-        """The arguments of the scan."""
+        """The arguments of the search."""
 
     @abstractmethod
     def _all_joints(self, given: Values) -> list[Reals]:

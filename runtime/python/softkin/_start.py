@@ -71,6 +71,43 @@ class IterativeForward(Mechanism):
             axes, twist, held=held, damping=damping, length=length
         )
 
+    def twist_rate(
+        self, axes: Numbers, velocities: Numbers, accelerations: Numbers, start: FrameLike | None = None
+    ) -> Reals:
+        """The acceleration of the frame, as `Mechanism.twist_rate`. start: as in `jacobian`."""
+        return super(IterativeForward, self._at("twist_rate", start)).twist_rate(axes, velocities, accelerations)
+
+    def axis_accelerations(
+        self,
+        axes: Numbers,
+        velocities: Numbers,
+        twist_rate: Numbers,
+        *,
+        held: Numbers | None = None,
+        damping: float = 0.0,
+        length: float | None = None,
+        start: FrameLike | None = None,
+    ) -> Reals:
+        """The accelerations of all axes, as `Mechanism.axis_accelerations`. start: as in `jacobian`."""
+        return super(IterativeForward, self._at("axis_accelerations", start)).axis_accelerations(
+            axes, velocities, twist_rate, held=held, damping=damping, length=length
+        )
+
+    def largest_feed(
+        self,
+        axes: Numbers,
+        twist: Numbers,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rate: Numbers | None = None,
+        start: FrameLike | None = None,
+    ) -> float:
+        """The largest speed along a path, as `Mechanism.largest_feed`. start: as in `jacobian`."""
+        return super(IterativeForward, self._at("largest_feed", start)).largest_feed(
+            axes, twist, velocities=velocities, accelerations=accelerations, twist_rate=twist_rate
+        )
+
     def condition(self, axes: Numbers, length: float | None = None, start: FrameLike | None = None) -> float:
         """The condition number of the Jacobian, as `Mechanism.condition`. start: as in `jacobian`."""
         return super(IterativeForward, self._at("condition", start)).condition(axes, length)
@@ -98,6 +135,39 @@ class IterativeForward(Mechanism):
         from softkin import _differential
 
         return _differential.singularity(self, self._programs_at(axes, start), axes)
+
+    def axis_velocities_batch(
+        self, axes: ArrayLike, twists: ArrayLike, start: Starts = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """The velocities of N rows, as `Mechanism.axis_velocities_batch`. start: as in `jacobian_batch`."""
+        from softkin import _accelerations
+
+        return _accelerations.axis_velocities_batch(self, self._programs_at(axes, start), axes, twists)
+
+    def axis_accelerations_batch(
+        self, axes: ArrayLike, velocities: ArrayLike, twist_rates: ArrayLike, start: Starts = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """The accelerations of N rows, as `Mechanism.axis_accelerations_batch`. start: as in `jacobian_batch`."""
+        from softkin import _accelerations
+
+        programs = self._programs_at(axes, start)
+        return _accelerations.axis_accelerations_batch(self, programs, axes, velocities, twist_rates)
+
+    def largest_feed_batch(
+        self,
+        axes: ArrayLike,
+        twists: ArrayLike,
+        *,
+        velocities: Numbers | None = None,
+        accelerations: Numbers | None = None,
+        twist_rates: ArrayLike | None = None,
+        start: Starts = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """The largest speeds of N rows, as `Mechanism.largest_feed_batch`. start: as in `jacobian_batch`."""
+        from softkin import _accelerations
+
+        programs, limits = self._programs_at(axes, start), (velocities, accelerations)
+        return _accelerations.largest_feed_batch(self, programs, axes, twists, twist_rates, limits)
 
     def _at(self, call: str, start: FrameLike | None) -> Self:
         """This machine, whose forward kinematics starts at a frame that a caller gives."""

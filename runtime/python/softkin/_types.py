@@ -98,7 +98,7 @@ class Solution(NamedTuple):
     axes: Reals | None
     status: Status
     others: tuple[Reals, ...] = ()
-    """Further solutions on the same branch, where the inverse is a root scan, the nearest to the reference first."""
+    """Further solutions on the same branch, where the inverse is a root search, the nearest to the reference first."""
     refusal: Diagnosis | None = None
     """Why there are no axes, as `diagnose` says: which axis is beyond a limit, and by how much."""
 
@@ -113,6 +113,9 @@ class Diagnosis(NamedTuple):
     """The missing amount of this quantity, in its own unit; 0 if there is no amount."""
     turn: int = 0
     """If the turn of an axis is the reason: the number of a turn inside the limits; 0 if there is none."""
+    projection: float = 0.0
+    """With status OK, the angle between the commanded rotation and that of the answer, in degrees (`in_radians()`: in
+    radians): 0 for a machine that takes the whole rotation, or reads none."""
 
     @property
     def in_words(self) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import atan2, hypot, pi
 
+from softkin._constants import SAME_ROTATION
 from softkin._types import Reals, Rotation, Vector
 
 
@@ -36,6 +38,17 @@ def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
     return product(transposed(base), rotation)
 
 
+def turn_between(first: Rotation, second: Rotation) -> float:
+    """The angle between two rotations, as a share of a full turn; 0 where they differ by rounding.
+
+    The cross products of the columns add up to twice its sine, the scalar products to one and twice its cosine.
+    """
+    (a, b, c), (d, e, f) = first, second
+    sine = hypot(dot(b, f) - dot(c, e), dot(c, d) - dot(a, f), dot(a, e) - dot(b, d))
+    angle = atan2(sine, dot(a, d) + dot(b, e) + dot(c, f) - 1.0)
+    return angle / (2.0 * pi) if angle > SAME_ROTATION else 0.0
+
+
 def moved(twist: Reals, arm: Vector) -> Reals:
     """The twist of a body, moved to the end of an arm that is fixed to the body."""
     x, y, z, about_x, about_y, about_z = twist
@@ -59,3 +72,36 @@ def cross(first: Vector, second: Vector) -> Vector:
 def times(vector: Vector, factor: float) -> Vector:
     """A vector times a number."""
     return vector[0] * factor, vector[1] * factor, vector[2] * factor
+
+
+def at_end(bias: Reals, spin: Vector, arm: Vector) -> Reals:
+    """The acceleration of a body that turns with a spin, moved to the end of an arm that is fixed to the body."""
+    place, turn = (bias[0], bias[1], bias[2]), (bias[3], bias[4], bias[5])
+    return (*plus(plus(place, cross(turn, arm)), cross(spin, cross(spin, arm))), *turn)
+
+
+def rates(rows: Sequence[Reals], speeds: Reals) -> Vector:
+    """Three rows of a Jacobian times the speeds of the axes."""
+    x, y, z = (sum([entry * speed for entry, speed in zip(row, speeds, strict=True)], 0.0) for row in rows)
+    return x, y, z
+
+
+def turned_twist(rotation: Rotation, twist: Reals) -> Reals:
+    """Both halves of a twist, or of its rate, turned."""
+    return (*turned(rotation, twist[:3]), *turned(rotation, twist[3:]))
+
+
+def on_flange(
+    carried: Reals, spin: Vector, flange: Rotation, end: Vector, own: tuple[Sequence[Reals], Reals, Reals]
+) -> Reals:
+    """The acceleration of an end point that moves on a flange.
+
+    carried, spin: of the flange; end: seen from it; own: the rows of the twist on the flange, the speeds of the axes,
+    and the acceleration at constant ones. What moves on a flange that turns gets twice the vector product of both in
+    addition, what turns there gets it once.
+    """
+    rows, speeds, bias = own
+    shift, turn = (cross(spin, turned(flange, rates(half, speeds))) for half in (rows[:3], rows[3:]))
+    added = (*times(shift, 2.0), *turn)
+    whole = zip(at_end(carried, spin, turned(flange, end)), added, turned_twist(flange, bias), strict=True)
+    return tuple(a + b + c for a, b, c in whole)

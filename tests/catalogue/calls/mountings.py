@@ -1,14 +1,17 @@
-"""Machines of the whole catalogue on a base, with a tool that they can carry."""
+"""Machines of the whole catalogue on a base, with a tool that they can carry; and that a machine is its copies."""
 
+import copy
+import json
+import pickle
 from functools import cache
 
 import softkin
-from softkin import Frame, KinematicsError, Status
+from softkin import Frame, KinematicsError, Mechanism, Status
 
 from tests.catalogue.calls.robots import NAMES, Axes, drawn_limits, poses, robots, with_limits
 from tests.catalogue.mounted.machines import BASE, TOOL, couplings
 
-__all__ = ["BASE", "EVERY", "limited", "machines", "radian", "tool_of"]
+__all__ = ["BASE", "EVERY", "confirm_copies", "limited", "machines", "radian", "tool_of"]
 
 COUPLINGS = couplings()
 EVERY = (*NAMES, *COUPLINGS)
@@ -54,3 +57,13 @@ def radian(robot: softkin.Mechanism, axes: Axes) -> Axes:
     """Axis values of a machine in degrees, in radians."""
     turn = 3.141592653589793 / 180.0
     return tuple(a * turn if axis.unit == "deg" else a for a, axis in zip(axes, robot.AXES, strict=True))
+
+
+def confirm_copies(one: Mechanism, axes: Axes, *more: Mechanism) -> None:
+    """Copies of every kind, written down and read again too, are equal and answer alike; and so are those given."""
+    written = json.loads(json.dumps(one.to_dict(), allow_nan=False))
+    read = [Mechanism.from_dict(written), Mechanism.from_json(one.to_json()), eval(repr(one), vars(softkin))]
+    for other in (copy.copy(one), copy.deepcopy(one), pickle.loads(pickle.dumps(one)), *read, one.changed(), *more):
+        assert other == one and hash(other) == hash(one) and {one: 1}[other] == 1
+        assert type(other) is type(one) and repr(other) == repr(one) and other.limits == one.limits
+        assert other.forward(axes) == one.forward(axes)

@@ -15,13 +15,9 @@ NAMES = (*DIMENSIONS, *COUPLED)
 Axes = tuple[float, ...]
 Ends = tuple[float | None, float | None] | None
 GEARED = {
-    "link_length_1": 300.0,
-    "link_length_2": 250.0,
-    "link_length_3": 80.0,
-    "coupling_12": -0.7,
-    "coupling_13": 0.3,
+    "link_length_1": 300.0, "link_length_2": 250.0, "link_length_3": 80.0, "coupling_12": -0.7, "coupling_13": 0.3,
     "coupling_23": 0.25,
-}
+}  # fmt: skip
 """An SCCC whose motors are no whole multiples of each other."""
 
 

@@ -3,9 +3,7 @@
 The truth is the machine without both: the frame of its flange is base^-1 * frame * tool^-1.
 """
 
-import copy
 import json
-import pickle
 import tracemalloc
 
 import numpy as np
@@ -15,7 +13,7 @@ from softkin import KinematicsError, Mechanism, Status
 from softkin._core import PITCH
 from softkin._start import IterativeForward
 
-from tests.catalogue.calls.mountings import BASE, EVERY, limited, machines, radian, tool_of
+from tests.catalogue.calls.mountings import BASE, EVERY, confirm_copies, limited, machines, radian, tool_of
 from tests.catalogue.calls.robots import Axes, frame_at
 from tests.catalogue.refusals import refusal
 
@@ -50,22 +48,8 @@ def test_it_is_a_value(name: str) -> None:
         radians = made.in_radians()
         assert robot.in_radians().with_tool(tool_of(robot)).with_base(BASE) == radians and radians.in_degrees() is made
         for one, at in ((made, axes), (radians, radian(robot, axes))):
-            written = json.loads(json.dumps(one.to_dict(), allow_nan=False))
-            copies = (
-                copy.copy(one),
-                copy.deepcopy(one),
-                pickle.loads(pickle.dumps(one)),
-                Mechanism.from_dict(written),
-                Mechanism.from_json(one.to_json()),
-                softkin.Mounted.from_dict(written),
-                eval(repr(one), vars(softkin)),
-                one.changed(),
-                one.changed(base=BASE.matrix),
-            )
-            for other in copies:
-                assert other == one and hash(other) == hash(one) and {one: 1}[other] == 1
-                assert type(other) is type(one) and repr(other) == repr(one) and other.limits == one.limits
-                assert other.forward(at) == one.forward(at)
+            written = json.loads(json.dumps(one.to_dict()))
+            confirm_copies(one, at, softkin.Mounted.from_dict(written), one.changed(base=BASE.matrix))
             assert one.changed(tool=softkin.Frame((0.0, 0.0, 0.0))) == one.changed(tool=np.eye(4)) != one
             for attribute in ("bare", "base", "tool", "checks_limits", "parameters", "_shift", "part", "new"):
                 with pytest.raises(AttributeError):
@@ -164,14 +148,16 @@ def test_names_and_lines(name: str) -> None:
         assert made.names(configuration) == robot.names(configuration) == made.in_radians().names(configuration)
         named = {key.replace(" ", "_"): value for key, value in made.names(configuration).items()}
         assert made.configuration(**named) == robot.configuration(**named) == configuration
-        goal = made.forward([a if i in robot.HELD else a + 2.0 for i, a in enumerate(axes)])[0]
+        beside = [[a if i in robot.HELD else a + step for i, a in enumerate(axes)] for step in (2.0, -2.0)]
+        goal = made.forward(beside[np.argmax(made.forward_batch(beside)[3] == Status.OK)])[0]
         line = made.line(frame.matrix, goal, configuration, axes, samples=3)
         assert line.axes and apart(line.axes[0], axes) < 1e-5 * size
         start, end = np.array(frame.position), np.array(goal.position)
+        met = 1e-8 if {"x", "y", "z"} <= {*robot.JACOBIAN_ROWS} else 1e-6  # outside the task it is tolerated
         for place, own, reached in zip(line.places, line.axes, line.frames, strict=True):
             assert apart(reached.position, start + place * (end - start)) < 1e-9 * (size + 1000.0)
             if robot.ROLE != "orientation" and not isinstance(robot, IterativeForward):
-                assert apart(made.forward(own)[0].position, reached.position) < 1e-8 * (size + 1000.0)
+                assert apart(made.forward(own)[0].position, reached.position) < met * (size + 1000.0)
         other = made.in_radians().line(frame, goal, configuration, radian(robot, axes), samples=3)
         assert bool(other) == bool(line) and apart(other.places, line.places) < 1e-6
         for own, same in zip(line.axes, other.axes, strict=True):

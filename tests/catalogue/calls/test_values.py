@@ -1,8 +1,9 @@
-"""A machine is a value: written down and read again, equal, hashed, copied, and never changed."""
+"""A machine is a value: written down and read again, equal, hashed, copied, never changed; and shown as a table."""
 
 import copy
-import json
 import pickle
+import re
+import xml.etree.ElementTree as ET
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Mechanism, Status
 
+from tests.catalogue.calls.mountings import BASE, EVERY, confirm_copies, machines, tool_of
 from tests.catalogue.calls.robots import NAMES, drawn_limits, poses, robots, with_limits
 from tests.catalogue.refusals import refusal
 
@@ -41,20 +43,7 @@ def test_every_machine_is_a_value(name: str) -> None:
     for number, one in enumerate(robots(name)):
         axes = poses(name, number, 1)[0]
         made = with_limits(one.made, drawn_limits(one, axes, rng))
-        written = json.loads(json.dumps(made.to_dict(), allow_nan=False))
-        copies = (
-            copy.copy(made),
-            copy.deepcopy(made),
-            pickle.loads(pickle.dumps(made)),
-            Mechanism.from_dict(written),
-            type(made).from_json(made.to_json()),
-            eval(repr(made), vars(softkin)),
-            made.changed(),
-        )
-        for other in copies:
-            assert other == made and hash(other) == hash(made)
-            assert type(other) is type(made) and repr(other) == repr(made) and other.limits == made.limits
-            assert other.forward(axes) == made.forward(axes)
+        confirm_copies(made, axes, type(made).from_json(made.to_json()))
         for parameter in made.PARAMETERS:
             assert getattr(made, parameter.name) == made.parameters[parameter.name]
         before = (repr(made), made.checks_limits, made.forward(axes))
@@ -192,3 +181,53 @@ def test_a_coupling_says_which_part_is_wrong(part: str, wrong: object) -> None:
     data = softkin.Coupled(softkin.Gantry3(), softkin.Wrist2()).to_dict()
     with pytest.raises(KinematicsError, match=f"Coupled: {part} must be the dictionary of a machine"):
         softkin.Coupled.from_dict({**data, part: wrong})
+
+
+@pytest.mark.broad
+@pytest.mark.parametrize("name", EVERY)
+def test_all_that_a_machine_has_is_in_its_tables(name: str) -> None:
+    """Axes, given parameters, branches, base and tool: as text and as well-formed HTML, in degrees and in radians."""
+    for bare, _, _ in machines(name):
+        mounted = bare.with_base(BASE).with_tool(tool_of(bare))
+        for robot in (bare, bare.in_radians(), mounted, mounted.in_radians()):
+            text = str(robot)
+            page = ET.fromstring(robot._repr_html_())
+            cells = ["".join(cell.itertext()) for cell in page.iter("td")]
+            drawings = ["".join(drawing.itertext()) for drawing in page.iter("{http://www.w3.org/2000/svg}svg")]
+            assert len(drawings) == (2 if isinstance(bare, softkin.Coupled) else 1)
+            assert all(axis.name.removeprefix("orientation ") in "".join(drawings) for axis in robot.AXES)
+            lines = text.splitlines()
+            assert lines[0] == robot.NAME and "\n" not in repr(robot)
+            expected = [name for axis in robot.AXES for name in (axis.name, axis.meaning)]
+            expected += [part for byte in robot.CONFIGURATION for part in (byte.name, ", ".join(byte.branches))]
+            expected += [p.meaning for p in bare.PARAMETERS if p.default is None]
+            assert all(word in text and (word in cells or not word) for word in expected)
+            frames = [line.split()[0] for line in lines if line[:5] in ("base ", "tool ")]
+            assert frames == ["base", "tool"] * (robot.in_degrees() is mounted)
+
+
+@pytest.mark.broad
+def test_limits_are_in_the_unit_of_the_axis() -> None:
+    """Both ends, one end, none; those of a quantity beside the axes; flags that differ from the default."""
+    robot = softkin.Scara4ZCcoupledType1(
+        link_length_1=325.0, link_length_2=225.0, limits={"A1": (-180.0, 90.0), "A2": (-10.0, None), "A3": (None, 5.0)}
+    )
+    lines = str(robot.in_radians()).splitlines()[3:7]
+    found = [re.split(r" {2,}", line)[2] for line in lines]
+    assert found == ["-3.14159 to 1.5708 rad", "from -0.174533 rad", "to 5 u", "none"]
+    arm = softkin.PCC(link_length_1=300.0, link_length_2=200.0, lower_elbow=10.0, upper_elbow=170.0)
+    for robot, words in ((arm, "10 to 170 deg"), (arm.in_radians(), "0.174533 to 2.96706 rad")):
+        mounted = robot.with_base(BASE)
+        for one in (robot, mounted):
+            assert words in next(line for line in str(one).splitlines() if line.startswith("elbow"))
+
+
+@pytest.mark.broad
+def test_a_path_is_one_line() -> None:
+    """The number of samples, and where and why it stops."""
+    robot = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0)
+    frame, _ = robot.forward((10.0, 20.0, 5.0, 30.0))
+    line = robot.in_radians().line(frame, frame.shifted(x=300.0), samples=50)
+    assert line.stop is not None
+    assert repr(line).startswith(f"<Path of Kin_Scara4_ZCcoupled_Type1: {len(line.axes)} samples, stops at 0.0")
+    assert "A2: out of reach" in repr(line) and len(repr(line)) < 120

@@ -9,6 +9,7 @@ from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import ORIENTATIONS, POSITIONS, Part, frames, orientation_parts, position_part
 from tests.catalogue.references import held_at
+from tests.orthonormal import rodrigues
 from tests.text.samples import tilted
 
 POSES = 2
@@ -19,7 +20,7 @@ PAIRS = [(p, o) for p in POSITIONS for o in ORIENTATIONS]
 
 def test_the_catalogue_has_both_kinds() -> None:
     """The catalogue has the expected numbers of position and orientation kinematics."""
-    assert len(POSITIONS) == 38 and len(ORIENTATIONS) == 5
+    assert len(POSITIONS) == 41 and len(ORIENTATIONS) == 5
 
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{p.name}-{o.name}" for p, o in PAIRS])
@@ -152,10 +153,7 @@ def _what_cannot_be_had(
 def _swing(rng: np.random.Generator) -> np.ndarray:
     """A turn about a horizontal axis: it tilts z and has no twist."""
     azimuth, tilt = rng.uniform(-np.pi, np.pi), rng.uniform(-2.5, 2.5)
-    cross = np.array(
-        [[0.0, 0.0, np.sin(azimuth)], [0.0, 0.0, -np.cos(azimuth)], [-np.sin(azimuth), np.cos(azimuth), 0.0]]
-    )
-    return np.eye(3) + np.sin(tilt) * cross + (1.0 - np.cos(tilt)) * cross @ cross
+    return rodrigues((np.cos(azimuth), np.sin(azimuth), 0.0), tilt)
 
 
 def _about_z(angle: float) -> np.ndarray:

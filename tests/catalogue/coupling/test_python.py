@@ -197,7 +197,7 @@ def test_a_diagnosis_names_the_part_that_refuses() -> None:
         softkin.CAxis(lower_c=-90.0, upper_c=90.0),
     )
     frame, configuration = robot.forward((10.0, 20.0, 30.0, 40.0))
-    assert robot.diagnose(frame, configuration) == (Status.OK, "", 0.0, 0)
+    assert robot.diagnose(frame, configuration)[:4] == (Status.OK, "", 0.0, 0)
     far = softkin.Frame((600.0, 0.0, 0.0), frame.rotation)
     found = robot.diagnose(far, configuration)
     assert found.status is Status.UNREACHABLE and found.reason.startswith("Kin_Scara2_Z: ")

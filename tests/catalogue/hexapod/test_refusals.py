@@ -7,7 +7,7 @@ from softkin import Hexapod, KinematicsError, Status
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod.machines import Array, Machine, machines
 from tests.catalogue.refusals import refusal
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, Controller
 from tests.text.hexapod.blocks import controller, made
 from tests.text.units import compiled
 
@@ -79,18 +79,6 @@ def test_machines_that_cannot_work(case: str) -> None:
     given = refused_parameters()[case]
     assert refusal(Hexapod, **given) is Status.NOT_INITIALIZED
     assert Controller(compiled(MECHANISM), MECHANISM).initialise(given) == NOT_INITIALIZED
-
-
-def test_limits_refuse_leg_by_leg(machine: Machine) -> None:
-    pose = (machine.home[:3], machine.home_turn)
-    legs = machine.axes(*pose)
-    for i in range(6):
-        for lower, upper in ((legs[i] - 9.0, legs[i] - 0.01), (legs[i] + 0.01, legs[i] + 9.0)):
-            limits = {f"lower_l{i + 1}": float(lower), f"upper_l{i + 1}": float(upper)}
-            assert refusal(Hexapod(**machine.given, **limits).inverse, pose) is Status.UNREACHABLE
-    assert made(machine, compiled(MECHANISM), **limits).inverse(*pose, (), (0.0,) * 6) == (UNREACHABLE, None)
-    unchecked = Hexapod(**machine.given, **limits, check_limits=False)
-    assert unchecked.inverse(pose) == pytest.approx(tuple(legs), rel=1e-14)
 
 
 def leans(machine: Machine, positions: Array, turns: Array) -> tuple[Array, Array]:

@@ -2,31 +2,15 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 from softkin import Hexapod, KinematicsError, Status
 
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod.machines import Array, Machine, machines, rotation, rotations
-from tests.catalogue.hexapod.test_search import name_of
 from tests.catalogue.refusals import refusal
 from tests.text.hexapod.blocks import controller, made
 from tests.text.units import compiled
 
 ANYWHERE = [(0, 0, 20), (3, 2, 20), (-4, 5, 26), (7, -7, 15)]
-
-
-def test_the_jacobian_is_the_inverse_of_the_rows(machine: Machine) -> None:
-    assert machine.robot.JACOBIAN_ROWS == ("x", "y", "z", "turn x", "turn y", "turn z")
-    for position, turn in zip(*machine.poses(20), strict=True):
-        jacobian = np.array(machine.robot.jacobian(machine.robot.inverse((position, turn))))
-        assert_allclose(jacobian @ machine.rows(position, turn), np.eye(6), atol=1e-9)
-
-
-def test_the_margin_is_the_normalised_determinant(machine: Machine) -> None:
-    for position, turn in zip(*machine.poses(20), strict=True):
-        margins = machine.robot.singularity(machine.robot.inverse((position, turn))).margins
-        assert list(margins) == ["rods_dependent"]
-        assert margins["rods_dependent"] == pytest.approx(machine.normalised(position, turn), rel=1e-9)
 
 
 @pytest.mark.parametrize("yaw", [90.0, -90.0])
@@ -100,9 +84,3 @@ def test_how_near_is_a_parameter(least: float) -> None:
         accepted = side * machine.normalised(machine.home[:3], turn) >= max(least, 1e-12)
         assert (robot.inverse_batch([machine.home[:3]], [turn])[1][0] == Status.OK) == accepted
         assert (block.inverse(machine.home[:3], turn, (), (0.0,) * 6)[1] is not None) == accepted
-
-
-def test_the_block_says_the_same(machine: Machine) -> None:
-    block = controller(name_of(machine))
-    for axes in machine.axes(*machine.poses(6, turn=45.0)):
-        assert block.is_singular(axes) == machine.robot.singularity(axes).is_singular

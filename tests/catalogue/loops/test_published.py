@@ -13,69 +13,55 @@ def delta(azimuths: tuple[float, ...], **sizes: float) -> softkin.Mechanism:
     return softkin.DeltaP3CType3(**given, **{f"azimuth_{i}": a for i, a in enumerate(azimuths, 1)})
 
 
-@pytest.mark.parametrize(
-    "axes, position",
-    [
-        ((30, 30, 30), (0, 0, -10.976451095529)),
-        ((10, 25, 40), (1.252020219789, -1.949378239769, -9.006516203479)),
-        ((45, 60, 30), (-3.738102003353, -0.197756004784, -15.058413037815)),
-    ],
-)
-def test_linuxcnc_rotary_delta(axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    robot = delta((-90.0, 30.0, 150.0), base_radius=10.0, inner_arm=10.0, outer_arm=14.0, tcp_radius=6.0)
-    np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-11)
+def linear_delta(radius: float, *azimuths: float) -> softkin.Mechanism:
+    """A delta with three rails around a circle."""
+    rails = [(radius * np.cos(turn), radius * np.sin(turn)) for turn in np.radians(azimuths)]
+    given = {f"rail_{c}_{i}": float(v) for i, rail in enumerate(rails, 1) for c, v in zip("xy", rail, strict=True)}
+    return softkin.TripodP3Z(arm_length=269.0, **given)
+
+
+def type_12(*links: float, swap_xy: bool = False) -> softkin.Mechanism:
+    return softkin.KinType12XY(**{f"link_length_{i}": v for i, v in enumerate(links, 1)}, swap_xy=swap_xy)
+
+
+LINUXCNC = delta((-90.0, 30.0, 150.0), base_radius=10.0, inner_arm=10.0, outer_arm=14.0, tcp_radius=6.0)
+T_LAYOUT = delta((0.0, 90.0, -90.0), base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=45.0)
+RAILS = linear_delta(130.25, 90.0, 210.0, 330.0)
+FIRST, SECOND = (300, 350, 100, 300, 100), (300, 350, 110, 280, 90)
+PUBLISHED = [
+    (LINUXCNC, (30, 30, 30), (0, 0, -10.976451095529), 1e-11),
+    (LINUXCNC, (10, 25, 40), (1.252020219789, -1.949378239769, -9.006516203479), 1e-11),
+    (LINUXCNC, (45, 60, 30), (-3.738102003353, -0.197756004784, -15.058413037815), 1e-11),
+    (T_LAYOUT, (20, 20, 20), (0, 0, -418.326579449955), 1e-9),
+    (T_LAYOUT, (10, 30, 45), (150.668457743427, 43.719611721084, -459.729467840755), 1e-9),
+    (T_LAYOUT, (-10, 15, 40), (181.884236450374, 63.902195073290, -396.894615840285), 1e-9),
+    (RAILS, (239.991168308698, 213.999893665922, 263.329663451188), (50, 0, 10), 1e-9),
+    (RAILS, (266.601132949329, 333.460800020652, 352.047475396436), (20, -80, 100), 1e-9),
+]
+"""The machine, axes, position, and the tolerance of the position; axes are held against 1e-9."""
+FIVE_BARS = [
+    (FIRST, (20, 0), (247.393957, -281.90778624)),
+    (FIRST, (0, 20), (328.89241728, -419.70705016)),
+    (FIRST, (15, -10), (267.03700002, -229.0008857)),
+    (SECOND, (0, 0), (343.81817978, -365.4909097)),
+    (SECOND, (15, -10), (270.26776336, -327.93810163)),
+]
+
+
+@pytest.mark.parametrize(("robot", "axes", "position", "tolerance"), PUBLISHED)
+def test_deltas_of_linuxcnc_and_klipper(
+    robot: softkin.Mechanism, axes: tuple[float, ...], position: tuple[float, ...], tolerance: float
+) -> None:
+    np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=tolerance)
     np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    "axes, position",
-    [
-        ((20, 20, 20), (0, 0, -418.326579449955)),
-        ((10, 30, 45), (150.668457743427, 43.719611721084, -459.729467840755)),
-        ((-10, 15, 40), (181.884236450374, 63.902195073290, -396.894615840285)),
-    ],
-)
-def test_klipper_rotary_delta_in_t_layout(axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    robot = delta((0.0, 90.0, -90.0), base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=45.0)
-    np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-9)
-    np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "position, axes",
-    [
-        ((50, 0, 10), (239.991168308698, 213.999893665922, 263.329663451188)),
-        ((20, -80, 100), (266.601132949329, 333.460800020652, 352.047475396436)),
-    ],
-)
-def test_linuxcnc_linear_delta(position: tuple[float, ...], axes: tuple[float, ...]) -> None:
-    turns = np.radians([90, 210, 330])
-    rails = {
-        f"rail_{c}_{i + 1}": float(130.25 * f(t))
-        for i, t in enumerate(turns)
-        for c, f in (("x", np.cos), ("y", np.sin))
-    }
-    robot = softkin.TripodP3Z(arm_length=269.0, **rails)
-    np.testing.assert_allclose(robot.inverse((position, IDENTITY)), axes, atol=1e-9)
-    np.testing.assert_allclose(robot.forward(axes)[0].position, position, atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "links, axes, position",
-    [
-        ((300, 350, 100, 300, 100), (20, 0), (247.393957, -281.90778624)),
-        ((300, 350, 100, 300, 100), (0, 20), (328.89241728, -419.70705016)),
-        ((300, 350, 100, 300, 100), (15, -10), (267.03700002, -229.0008857)),
-        ((300, 350, 110, 280, 90), (0, 0), (343.81817978, -365.4909097)),
-        ((300, 350, 110, 280, 90), (15, -10), (270.26776336, -327.93810163)),
-    ],
-)
+@pytest.mark.parametrize(("links", "axes", "position"), FIVE_BARS)
 def test_type_12(links: tuple[float, ...], axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    given = {f"link_length_{i}": v for i, v in enumerate(links, 1)}
-    robot = softkin.KinType12XY(**given)
+    robot = type_12(*links)
     np.testing.assert_allclose(robot.forward(axes)[0].position[:2], position, atol=2e-8)
     np.testing.assert_allclose(robot.inverse(((*position, 0.0), IDENTITY)), axes, atol=1e-7)
-    mirrored = softkin.KinType12XY(**given, swap_xy=True)
+    mirrored = type_12(*links, swap_xy=True)
     np.testing.assert_allclose(mirrored.forward(axes)[0].position[:2], position[::-1], atol=2e-8)
 
 

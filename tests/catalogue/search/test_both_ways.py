@@ -1,4 +1,4 @@
-"""Forward and inverse kinematics of arms with a root scan, on every branch, and the number of solutions."""
+"""Forward and inverse kinematics of arms with a root search, on every branch, and the number of solutions."""
 
 from itertools import combinations, product
 

@@ -1,5 +1,5 @@
-"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform by joints that move
-ends of its rods. The hexapod, whose legs are joints, has `hexapod`.
+"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform. What the hexapod
+alone can be asked, whose legs are joints, is in `hexapod`.
 """
 
 import pytest
@@ -8,7 +8,7 @@ from derive.description.mechanism import Mechanism
 from tests.catalogue.turning_machines import TURNING, TurningMachine, turning_machines_of
 
 
-@pytest.fixture(params=[m for m in TURNING if m.name != "Kin_Hexapod"], ids=lambda m: m.name)
+@pytest.fixture(params=TURNING, ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
     return request.param
 

@@ -40,6 +40,9 @@ def _across(machine: TurningMachine, positions: np.ndarray, rotations: np.ndarra
 
 def test_at_the_end_of_a_leg_both_branches_answer_the_same(machines: tuple[TurningMachine, ...]) -> None:
     """In Python and in Structured Text; a little inside they are apart, a little beyond there is no answer."""
+    if "rod_length_1" not in machines[0].given:  # its legs are joints, which end at limits alone
+        assert machines[0].mechanism.name == "Kin_Hexapod"
+        return
     machine, position, rotation = at_its_end(machines[0])
     own = home_slot(machine)
     reference = (0.0,) * len(machine.robot.AXES)

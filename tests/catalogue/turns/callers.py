@@ -69,7 +69,7 @@ class InPython:
 
     def why(self, asked: Asked) -> Reason:
         """What `diagnose` says."""
-        status, reason, missing, turn = self.robot.diagnose(asked.frame, asked.configuration, asked.reference)
+        status, reason, missing, turn, _ = self.robot.diagnose(asked.frame, asked.configuration, asked.reference)
         assert status is Status.UNREACHABLE
         return reason, missing, turn
 
@@ -115,7 +115,7 @@ class OnController:
 
     def why(self, asked: Asked) -> Reason:
         """What Diagnose says."""
-        return self.controller.explain(*asked.frame, asked.configuration, asked.reference)
+        return self.controller.explain(*asked.frame, asked.configuration, asked.reference)[:3]
 
     def check_alike(self) -> None:
         """There is one way."""

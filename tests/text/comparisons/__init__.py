@@ -3,8 +3,6 @@
 A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from tests.text.comparisons import axes, configurations, initialization, offsets, orientations, poses, velocities
@@ -26,9 +24,11 @@ COMPARISONS: dict[str, Comparison] = {
     "Jacobian": velocities.jacobian,
     "Margins": velocities.margins,
     "AxisVelocities": velocities.axis_velocities,
+    "AxisAccelerations": velocities.axis_accelerations,
     "JacobianFrom": velocities.from_start(velocities.jacobian),
     "MarginsFrom": velocities.from_start(velocities.margins),
     "AxisVelocitiesFrom": velocities.from_start(velocities.axis_velocities),
+    "AxisAccelerationsFrom": velocities.from_start(velocities.axis_accelerations),
     "InitializeReason": initialization.why_initialize,
     "Diagnose": poses.diagnose,
     "GetOrientationImage": orientations.image,
@@ -46,14 +46,7 @@ COMPARISONS: dict[str, Comparison] = {
 """By the name of the method."""
 
 POSELESS = {
-    "InitializeReason",
-    "Initialize",
-    "IsInitialized",
-    "GetKinematicsName",
-    "GetAxisProperties",
-    "AxisSettings",
-    "GetOrientationImage",
-    "GetFlangeOrientationImageTotal",
-    "GetConfigurationDataSize",
-}
+    "InitializeReason", "Initialize", "IsInitialized", "GetKinematicsName", "GetAxisProperties", "AxisSettings",
+    "GetOrientationImage", "GetFlangeOrientationImageTotal", "GetConfigurationDataSize",
+}  # fmt: skip
 """Methods that no pose goes into: a few samples of a machine are enough."""

@@ -1,13 +1,10 @@
 """The axes of a block: their properties, and the limits of the drives, which narrow those of the machine."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from derive.description.mechanism import Joint, Kind
-from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons.poses import assert_same_pose, solved
-from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked, assert_same, is_close
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 from tests.text.settings import Range, own_limits, together

@@ -1,7 +1,5 @@
 """The bytes of CONFIGDATA: branches and turns."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from tests.text.samples import Bytes, Sample

@@ -1,9 +1,6 @@
 """Whether a block is initialised, why it is not, and its name."""
 
-from __future__ import annotations
-
-from tests.text.closeness import assert_same
-from tests.text.controller import NOT_INITIALIZED, OK, Controller
+from tests.text.controller import NOT_INITIALIZED, OK, Controller, assert_same
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 

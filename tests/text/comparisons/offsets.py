@@ -1,12 +1,9 @@
 """Points at an offset from the flange, and the configuration of each."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
-from tests.text.closeness import asked, assert_same
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 

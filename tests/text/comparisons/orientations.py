@@ -1,10 +1,7 @@
 """Orientations: of the axes, and the images of the flange."""
 
-from __future__ import annotations
-
 from derive.description.mechanism import Turning
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK, UNREACHABLE
+from tests.text.controller import OK, UNREACHABLE, asked, assert_same
 from tests.text.samples import HALF_TURN, NO_TURN, Sample
 from tests.text.serial_pairs import SerialPair
 

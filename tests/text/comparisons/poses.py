@@ -1,15 +1,12 @@
 """Poses: from axis values to a pose, back again, and why a command is refused."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 
 from derive.equations.chain_splits import is_spatial
 from tests.catalogue.machines import Machine
-from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import OK, Answer
+from tests.text.controller import OK, Answer, asked, assert_same, is_close
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Sample, commands
 from tests.text.serial_pairs import SerialPair

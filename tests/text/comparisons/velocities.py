@@ -1,7 +1,5 @@
 """Velocities, and the poses where they have no bound: the Jacobian, singularities and their margins."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import isnan, pi, prod
 from typing import Any
@@ -10,8 +8,7 @@ from softkin import Frame
 from softkin._start import IterativeForward
 
 from tests.text import values
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import OK
+from tests.text.controller import OK, asked, assert_same
 from tests.text.samples import Sample
 from tests.text.serial_pairs import SerialPair
 
@@ -47,9 +44,35 @@ def axis_velocities(pair: SerialPair, sample: Sample, start: Frame | None = None
     largest = [max(map(abs, column)) for column in zip(*rows, strict=True)]
     size = max(1.0, sum(entry * abs(v) for entry, v in zip(largest, speeds, strict=True)))
     for row, name, value in zip(rows, pair.robot.JACOBIAN_ROWS, twist, strict=False):
-        expected = value * pi / 180 if name.startswith("turn") else value
+        expected = value if name in ("x", "y", "z") else value * pi / 180
         assert abs(sum(a * b for a, b in zip(row, speeds, strict=True)) - expected) < 1e-9 * size, f"{pair} {sample}"
     assert not any(found[len(speeds) :])
+
+
+def axis_accelerations(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
+    """AxisAccelerations gives what Python turns into the twist's rate, or the status of AxisVelocities and zeros."""
+    rate, speeds = [400.0, -300.0, 200.0, 100.0, -150.0, 250.0], [30.0, -20.0, 40.0, 25.0, -35.0, 45.0]
+    found = [values.MEANINGLESS] * 6
+    given = {"aAccelerations": found, "aVelocities": list(speeds), "aTwistRate": rate}
+    given |= {"a": values.axes(pair.library, sample.axes)}
+    status, _ = _called(pair, "AxisAccelerations", given, start)
+    if status != OK:
+        assert found == [0.0] * 6
+        velocities = [values.MEANINGLESS] * 6
+        given = {"aVelocities": velocities, "aTwist": rate, "a": values.axes(pair.library, sample.axes)}
+        assert _called(pair, "AxisVelocities", given, start)[0] == status
+        return
+    angles = [pi / 180 if j.in_degrees else 1.0 for j in pair.mechanism.joints]
+    moving, turning = ([v * unit for v, unit in zip(own, angles, strict=False)] for own in (speeds, found))
+    own_start = {} if not _start_in_python(pair, start) else {"start": start}
+    reached = pair.robot.twist_rate(sample.axes, moving, turning, **own_start)
+    rows = pair.robot.jacobian(sample.axes, *_start_in_python(pair, start))
+    largest = [max(map(abs, column)) for column in zip(*rows, strict=True)]
+    size = max(1.0, sum(entry * (abs(a) + v * v) for entry, a, v in zip(largest, turning, moving, strict=True)))
+    for name, value, back in zip(pair.robot.JACOBIAN_ROWS, rate, reached, strict=False):
+        expected = value if name in ("x", "y", "z") else value * pi / 180
+        assert abs(back - expected) < 1e-9 * size, f"{pair} {sample}"
+    assert not any(found[len(angles) :])
 
 
 def singularity(pair: SerialPair, sample: Sample) -> None:

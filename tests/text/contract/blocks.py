@@ -1,7 +1,5 @@
 """All emitted files, and their blocks, compiled together."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 from derive.command.catalogue import OUTPUT

@@ -1,7 +1,5 @@
 """The base block, and what every block supplies to it."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

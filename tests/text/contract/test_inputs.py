@@ -1,7 +1,5 @@
 """Every input of a block tells what it is, its unit and its range."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -20,7 +20,7 @@ def test_the_interface_has_our_own_methods() -> None:
     assert {m.name: header(m) for m in interface.methods} == {
         name: (name, s.returns, *((p.scope, p.name, p.type) for p in s.parameters)) for name, s in CONTRACT.own.items()
     }
-    of_axes = {"Jacobian", "AxisVelocities", "Margins"}
+    of_axes = {"Jacobian", "AxisVelocities", "AxisAccelerations", "Margins"}
     assert set(CONTRACT.own) == {"Diagnose", "InitializeReason", *of_axes, *(f"{name}From" for name in of_axes)}
 
 

@@ -1,7 +1,5 @@
 """Which methods write the variables of an instance: several tasks may call all others at once."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Orientation kinematics as function blocks and in Python, with the calls of a coupling."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache

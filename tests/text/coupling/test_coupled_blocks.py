@@ -4,8 +4,6 @@ The stand-in for SoftMotion's coupling calls the documented methods in the docum
 sums of vectors and products of matrices.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,7 @@ from softkin import KinematicsError
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.coupling.parts import EVERYTHING, ORIENTATIONS, Part, orientation_parts, position_part
-from tests.text.closeness import asked
-from tests.text.controller import OK, Controller
+from tests.text.controller import OK, Controller, asked
 from tests.text.coupling.blocks import Image, OrientationController
 from tests.text.samples import tilted
 from tests.text.settings import together

@@ -1,7 +1,5 @@
 """Every statement of the emitted orientation kinematics is executed by the tests: none is dead, none untried."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism

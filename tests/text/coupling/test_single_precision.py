@@ -1,7 +1,5 @@
 """A coupling repairs the commanded frame once, and so does each of the blocks that SoftMotion's coupling asks."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

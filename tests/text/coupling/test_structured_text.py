@@ -1,8 +1,6 @@
 """Every method of the emitted orientation kinematics is executed, in both orders of the matrix, and answers as Python
 does."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 
@@ -13,11 +11,11 @@ from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import EVERYTHING, position_part
 from tests.harness.instance import Entry
+from tests.orthonormal import rodrigues
 from tests.text import values
-from tests.text.closeness import asked, assert_same, is_close
 from tests.text.comparisons import COMPARISONS as COMMON
 from tests.text.comparisons.initialization import initialize
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE
+from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, asked, assert_same, is_close
 from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
 from tests.text.samples import HALF_TURN, Rows, Sample, tilted
 from tests.text.units import compiled, public_methods
@@ -53,10 +51,7 @@ def images(rng: np.random.Generator) -> Iterator[tuple[Image, Callable[[], np.nd
 
 
 def _about(axis: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    angle = rng.uniform(-np.pi, np.pi)
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+    return rodrigues(axis, rng.uniform(-np.pi, np.pi))
 
 
 def compatible(pair: OrientationPair, sample: Sample) -> None:

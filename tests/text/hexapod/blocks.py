@@ -1,7 +1,5 @@
 """The function block of every machine, called as a controller calls it."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from derive.mechanisms.kin_hexapod import MECHANISM

@@ -1,7 +1,5 @@
 """The function block: every method answers as Python does, to the last digit, and every statement of it runs."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -109,7 +107,18 @@ def test_without_control_there_is_no_jacobian() -> None:
     """Where the legs do not control the platform there is no Jacobian, and the pose is singular."""
     block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
     assert block.jacobian(axes) == (IMPOSSIBLE, None)
+    assert accelerated(block, axes) == IMPOSSIBLE
     assert block.is_singular(axes)
+
+
+def accelerated(block: Controller, axes: tuple[float, ...]) -> str:
+    """The status of AxisAccelerations, with zeros where it refuses."""
+    found, given = [1.0] * 6, {"aVelocities": [3.0] * 6, "aTwistRate": [0.0] * 6}
+    status: str = block.block.call(
+        "AxisAccelerations", aAccelerations=found, **given, a=values.axes(block.library, axes)
+    )
+    assert status == OK or found == [0.0] * 6
+    return status
 
 
 @pytest.mark.slow
@@ -137,6 +146,8 @@ def test_every_statement_runs() -> None:
             == (IMPOSSIBLE, None)
         )
         assert controller("nominal").jacobian((1e6,) * 6)[0] == IMPOSSIBLE
+        assert accelerated(controller("nominal"), (1e6,) * 6) == IMPOSSIBLE
+        assert accelerated(controller("nominal"), (650.0,) * 6) == OK
         assert controller("nominal").is_singular((1e6,) * 6)
     assert left_out(MECHANISM, statements) == []
 
@@ -150,7 +161,13 @@ def check_other_poses() -> None:
         assert block.inverse(lost.frame.position, lost.frame.rotation, (), lost.axes) == (UNREACHABLE, None)
     nowhere = values.frame(block.library, (np.nan, 0.0, 0.0), np.eye(3).tolist())
     at_home = values.axes(block.library, (650.0,) * 6)
-    for method, given in (("JacobianFrom", {"J": [0.0] * 36}), ("MarginsFrom", {"aMargins": [0.0] * 8})):
+    still = {"aAccelerations": [0.0] * 6, "aVelocities": [0.0] * 6, "aTwistRate": [0.0] * 6}
+    given_to = {
+        "JacobianFrom": {"J": [0.0] * 36},
+        "MarginsFrom": {"aMargins": [0.0] * 8},
+        "AxisAccelerationsFrom": still,
+    }
+    for method, given in given_to.items():
         assert block.block.call(method, **given, a=at_home, f=nowhere) == BAD_INPUT
 
 

@@ -1,11 +1,8 @@
 """What every method of a closed loop must answer: the comparisons of the serial machines, but for free rotations."""
 
-from __future__ import annotations
-
 from derive.description.mechanism import Turning
-from tests.text.closeness import assert_same
 from tests.text.comparisons import COMPARISONS as SERIAL
-from tests.text.controller import OK
+from tests.text.controller import OK, assert_same
 from tests.text.loops.machines import Loop
 from tests.text.samples import HALF_TURN, NO_TURN, Sample
 

@@ -1,7 +1,5 @@
 """Machines of every mechanism with rods, as a block and in Python, and poses of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +13,7 @@ from softkin import KinematicsError, Status
 from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.kinematics.parameters import machine_parameters
 from tests.mechanisms import catalogue
+from tests.random_axes import random_axes
 from tests.text.both import Both
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample, tilted
@@ -136,9 +135,8 @@ def _drawn(machine: Machine, count: int, rng: Generator) -> np.ndarray:
     offsets = np.array([robot.parameters[j.offset.name] for j in joints])
     if machine.mechanism.home:
         near = np.array([j.nominal for j in joints]) + offsets
-        return near + rng.uniform(-120.0, 120.0, (count, len(joints)))
-    sizes = np.array([170.0 if j.is_angle else machine.reach for j in joints])
-    return offsets + rng.uniform(-1.0, 1.0, (count, len(joints))) * sizes
+        return random_axes(robot, count, rng, 120.0, 120.0, near)
+    return random_axes(robot, count, rng, 170.0, machine.reach, offsets)
 
 
 def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:

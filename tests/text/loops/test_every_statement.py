@@ -1,7 +1,5 @@
 """Every statement of every emitted loop is executed by the tests of this folder: none is dead, none untried."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -22,9 +20,8 @@ from tests.text import (
     test_initialise,
     test_not_initialised,
 )
-from tests.text.closeness import asked, assert_same
-from tests.text.controller import NOT_INITIALIZED, Controller
-from tests.text.loops import test_branches, test_refusals
+from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
+from tests.text.loops import test_branches
 from tests.text.loops.answers import COMPARISONS
 from tests.text.loops.machines import LOOPS, Loop, loop_of, loops_of
 from tests.text.loops.test_branches import compare
@@ -86,7 +83,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
         test_configuration_blocks.test_what_is_set_is_read(loops[1])
     provoke(loops[1], loops[1].regular[0])
     test_branches.test_a_byte_without_a_meaning_is_refused(loops[:1])
-    test_refusals.test_every_limit_refuses_alone(loops)
+    test_branches.test_every_limit_refuses_alone(loops)
     check_other_turns(loops[1], loops[1].regular[0])
     test_axis_settings.every_statement_of_the_settings(mechanism)
     impossible = [given | changes for name, given, changes, _ in IMPOSSIBLE.values() if name == mechanism.name]

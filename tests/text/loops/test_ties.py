@@ -1,8 +1,6 @@
 """Which of two slides is nearer does not depend on the unit: in Python, scalar and batch, in couplings, in Structured
 Text."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import softkin

@@ -1,7 +1,5 @@
 """These tests would notice: a text with one statement slightly wrong answers differently from Python."""
 
-from __future__ import annotations
-
 import re
 from itertools import cycle
 

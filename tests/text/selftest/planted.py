@@ -1,7 +1,5 @@
 """Faults in a block, all in one text: an input chooses which of them it has."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

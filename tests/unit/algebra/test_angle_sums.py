@@ -1,7 +1,5 @@
 """Sums of angles: their names, and the addition theorems read backwards."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import pytest

@@ -1,7 +1,5 @@
 """The normal form: the same function, reduced modulo sin^2 + cos^2 = 1 and s^2 = 1."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """The ring gives the very expression that SymPy's own expansion gives, squares reduced."""
 
-from __future__ import annotations
-
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st

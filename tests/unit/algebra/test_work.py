@@ -1,7 +1,5 @@
 """The work of a derivation: counted before it is done, and the same whether or not results are kept."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

@@ -1,7 +1,5 @@
 """Descriptions as people write them who write one for the first time: each fault is told by a sentence, at once."""
 
-from __future__ import annotations
-
 import re
 import time
 from pathlib import Path
@@ -185,10 +183,7 @@ FAULTS = {
         written(chain=CHAIN.replace("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)")),
         "of the chain shifts by link_1*z1/2, which is no length: its powers must add to 1",
     ),
-    "a misspelt import": (
-        written("from derive.mechanism import Mechanizm"),
-        "did you mean 'Mechanism'?",
-    ),
+    "a misspelt import": (written("from derive.mechanism import Mechanizm"), "did you mean 'Mechanism'?"),
     "limits the wrong way round": (
         written('A2 = rotary("A2", "turn", limits=(90, -90))'),
         "joint 'A2': its limits (90, -90) are empty; state the lower end first",

@@ -1,7 +1,5 @@
 """Descriptions that are wrong or not supported: refused with a sentence that names the fault."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -29,16 +27,12 @@ from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
 from derive.kinematics.build import build
 from derive.solver.unsolved import Unsolved
 from tests.mechanisms import named
-from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
+from tests.unit.kinematics.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, described, links
 from tests.unit.kinematics.inventions import planar_arm as arm
 
 FOLLOWED = Turning.ABOUT_Z
 FLANGE = flag("flange_down", "flange looks down")
 ARM = Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2)
-
-
-def described(**description: object) -> Mechanism:
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
 
 
 def with_parameter(name: str, kind: Callable[..., Parameter] = length) -> Mechanism:

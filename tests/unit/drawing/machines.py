@@ -1,7 +1,5 @@
 """Machines whose drawings are tested: one of every kind of chain and loop; the truth is their closure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

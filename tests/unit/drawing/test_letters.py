@@ -1,7 +1,5 @@
 """Letters that several processes draw from one font: a fork shares the places at which open files are read."""
 
-from __future__ import annotations
-
 from hashlib import sha256
 from multiprocessing import get_context
 

@@ -1,8 +1,6 @@
 """Every block has its picture: shipped, referred to, small, and with every axis and length in its text, none cut
 off."""
 
-from __future__ import annotations
-
 import re
 import xml.etree.ElementTree as ElementTree
 from itertools import combinations

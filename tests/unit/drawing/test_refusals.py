@@ -1,7 +1,5 @@
 """A description whose drawing would be wrong is refused, with a sentence that names the fault."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The drawing is right: the closure holds at the drawn tool frame, bars have their lengths, arrows their directions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The arc tangent of several poses at a time, held against forty digits."""
 
-from __future__ import annotations
-
 import numpy as np
 from mpmath import mp
 

@@ -1,7 +1,5 @@
 """Long statements on several lines: nothing is lost, no line is too wide, and the time follows the length."""
 
-from __future__ import annotations
-
 from time import process_time
 
 import pytest

@@ -1,7 +1,5 @@
 """Configuration bytes in the generated package: periods, slots, and what is refused at the edge."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

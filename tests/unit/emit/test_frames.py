@@ -1,7 +1,5 @@
 """Frames of the package: every form in which they are written, against products of matrices written down here."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

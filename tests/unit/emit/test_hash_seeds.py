@@ -1,7 +1,5 @@
 """The text of a mechanism is the same whatever Python's hash seed is: no set decides an order."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

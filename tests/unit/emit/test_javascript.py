@@ -1,7 +1,5 @@
 """Expressions and lines of JavaScript."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

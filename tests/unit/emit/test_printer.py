@@ -1,7 +1,5 @@
 """Printed expressions and programs, run, against the reference semantics of what they print."""
 
-from __future__ import annotations
-
 import ast
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The generated inverse refuses with its reason, which is what `diagnose` says: there is one inverse."""
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """A body on plain numbers that refuses with a diagnosis, run as it is printed."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What branches share has room in the structure that the base block keeps for them; what has none is computed again."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

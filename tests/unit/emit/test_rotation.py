@@ -1,7 +1,5 @@
 """What becomes of a rotation that a caller gives: in the reference semantics, on plain numbers, and on arrays."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

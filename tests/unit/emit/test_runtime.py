@@ -1,7 +1,5 @@
 """The primitives of the generated package, on plain numbers and on arrays, against the reference semantics."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Lines of Structured Text that carry a sentence: they fit, and nothing of the sentence is lost."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """What has numbers without being a sequence of them, and what has none: refused, or empty."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """All branches at once: `inverse_all`, `branches`, `branch` and batches against the branches one by one."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 
@@ -15,6 +13,7 @@ from softkin._start import IterativeForward
 
 from derive.description.mechanism import Mechanism as Description
 from tests.mechanisms import catalogue
+from tests.random_axes import random_axes
 
 DESCRIPTIONS = [m for _, m in catalogue() if not m.is_orientation or m.joints]
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -37,16 +36,15 @@ def robot_of(
 def samples(robot: Mechanism, count: int) -> tuple[Frames, np.ndarray]:
     """Frames of random axes, every third drawn away from the machine, and random references."""
     random = np.random.default_rng(8)
-    spans = [170.0 if axis.unit == "deg" else 90.0 for axis in robot.AXES]
     frames: Frames = []
     while len(frames) < count:
         try:
-            (position, rotation), _ = robot.forward(random.uniform(-1, 1, len(spans)) * spans)
+            (position, rotation), _ = robot.forward(random_axes(robot, 1, random, slide=90.0)[0])
         except KinematicsError:
             position, rotation = tuple((random.uniform(-1, 1, 3) * _around(robot)).tolist()), IDENTITY
         far = 1.4 if len(frames) % 3 == 0 else 1.0
         frames.append((tuple(far * c for c in position), rotation))
-    return frames, random.uniform(-2, 2, (count, len(spans))) * spans
+    return frames, random_axes(robot, count, random, 340.0, 180.0)
 
 
 def _around(robot: Mechanism) -> np.ndarray:

@@ -1,7 +1,5 @@
 """Other words for the same chain: what does not change the machine, done at random places, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from random import Random
 

@@ -1,7 +1,5 @@
 """The one form of a chain: it is the same machine, and other words for it have the same form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -61,16 +59,10 @@ def test_the_form_is_its_own_form(name: str) -> None:
 
 
 ALIKE = (
-    "ball wrist, shoulder beside",
-    "three parallel",
-    "wrist with an offset along its second turn",
-    "wrist inclined by 60 degrees",
-    "Stanford, with named lengths",
-    "SCARA that hangs",
-    "palletizer",
-    "five axes, nutating head",
-    "arm on a rail",
-)
+    "ball wrist, shoulder beside", "three parallel", "wrist with an offset along its second turn",
+    "wrist inclined by 60 degrees", "Stanford, with named lengths", "SCARA that hangs", "palletizer",
+    "five axes, nutating head", "arm on a rail",
+)  # fmt: skip
 
 
 @pytest.mark.slow

@@ -1,7 +1,5 @@
 """The one form of a closed loop: angles that stand as numbers, and rods that end beside the commanded point."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sympy import Expr, cos, pi, sin

@@ -1,7 +1,5 @@
 """Numbers in a chain: which are right angles, how the others are named, what is said of those that are almost right."""
 
-from __future__ import annotations
-
 import math
 import re
 from itertools import product
@@ -21,7 +19,7 @@ from derive.geometry.pose import pose_of
 from derive.kinematics.build import build
 from derive.mechanism import DEGREE, angle, length, linear, radians, rotary
 from derive.solver.unsolved import Unsolved
-from tests.unit.kinematics.inventions import invention
+from tests.unit.kinematics.inventions import described as invented
 
 A1, A2, A3, A4, A5, A6 = (rotary(f"A{k}", "turn") for k in range(1, 7))
 P1, P2, P3 = (linear(f"P{k}", "slide") for k in range(1, 4))
@@ -73,7 +71,7 @@ XYZ = Task("xyz")
 
 def described(chain: Chain, joints: tuple[Joint, ...], task: Task = XYZ, **stated: object) -> Mechanism:
     """A mechanism with a chain."""
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), joints=joints, chain=chain, task=task, **stated).mechanism
+    return invented(joints=joints, chain=chain, task=task, **stated)
 
 
 def matrix(chain: Chain, values: dict[sp.Symbol, float]) -> sp.Matrix:

@@ -5,8 +5,6 @@ Their form is the same, so what is derived of them is the same: solutions, opera
 What is derived of some is measured against the first wording all the same.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ find_mean   the arithmetic-geometric mean: each pass needs a root, until both nu
 settle      the mean of a number and a second one, again and again, until it is the second one
 """
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -226,13 +224,9 @@ def in_structured_text(name: str) -> Answers:
 
 
 LANGUAGES: dict[str, Callable[..., Answers]] = {
-    "the interpreter": interpreted,
-    "Python": in_python,
-    "Python on arrays": in_arrays,
-    "C": in_c,
-    "JavaScript": in_javascript,
-    "Structured Text": in_structured_text,
-}
+    "the interpreter": interpreted, "Python": in_python, "Python on arrays": in_arrays, "C": in_c,
+    "JavaScript": in_javascript, "Structured Text": in_structured_text,
+}  # fmt: skip
 
 
 def answers(language: str, name: str, folder: Path) -> Answers:

@@ -1,7 +1,5 @@
 """`Call`: a program that several programs share, in all passes and in the verifier."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`Call` in the step of `Iterate`: its semantics, its passes and its cost, and equal answers in every language."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path

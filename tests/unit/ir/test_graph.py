@@ -1,7 +1,5 @@
 """The graph of values: which values are one node, and where its sign stands."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

@@ -1,7 +1,5 @@
 """`Solve` and `Iterate`: their semantics, their verification, and equal answers in every language."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Programs as data: the names that they read, and the simplifications of primitives."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from derive.ir.constants import DEGREE

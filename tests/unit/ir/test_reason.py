@@ -1,7 +1,5 @@
 """Reasons in the passes: an amount is right wherever its refusal is moved, and costs nothing where nothing refuses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

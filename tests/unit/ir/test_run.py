@@ -1,7 +1,5 @@
 """The reference interpreter: the meaning of every primitive, and the execution of a program."""
 
-from __future__ import annotations
-
 from math import atan2, cos, nextafter, pi, sin
 
 import numpy as np
@@ -76,17 +74,11 @@ def test_nearest_period(angle: float, centre: float) -> None:
 @pytest.mark.parametrize(
     "delta, expected",
     [
-        (-180.0, -180.0),
-        (180.0, -180.0),
-        (540.0, -180.0),
-        (-180.0 - 0.5e-9, -180.0 - 0.5e-9),
-        (180.0 - 0.5e-9, -180.0 - 0.5e-9),
-        (-180.0 - 2e-9, 180.0 - 2e-9),
-        (180.0 - 2e-9, 180.0 - 2e-9),
-        (0.0, 0.0),
+        (-180.0, -180.0), (180.0, -180.0), (540.0, -180.0), (-180.0 - 0.5e-9, -180.0 - 0.5e-9),
+        (180.0 - 0.5e-9, -180.0 - 0.5e-9), (-180.0 - 2e-9, 180.0 - 2e-9), (180.0 - 2e-9, 180.0 - 2e-9), (0.0, 0.0),
         (360.0, 0.0),
     ],
-)
+)  # fmt: skip
 def test_the_interval_of_a_period_is_half_open_and_shifted_down(centre: float, delta: float, expected: float) -> None:
     """Shifted by 1e-9 degrees: what rounding moves across an edge stays on its side."""
     found = float(nearest_period(np.asarray(centre + delta), np.asarray(centre)))

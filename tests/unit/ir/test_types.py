@@ -1,7 +1,5 @@
 """Types: the type of an expression, and the mixtures that are refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

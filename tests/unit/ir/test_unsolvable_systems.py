@@ -1,8 +1,6 @@
 """`Solve` is total: whatever the numbers are, it ends in a solution or in zeros, in every language, and nothing
 faults."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

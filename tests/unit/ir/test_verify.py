@@ -1,7 +1,5 @@
 """The verifier refuses every program that some language could not print, and names program and place."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Mechanisms for which the derivation was not tuned, each with its forward kinematics written by hand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -31,6 +29,7 @@ from derive.description.mechanism import (
     sign,
 )
 from derive.geometry.frames import Chain, Rz, Tx, Txyz, Ty, Tz, flip_x
+from tests.machines.textbook import read_by
 
 Array = NDArray[np.float64]
 Hand = Callable[[Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]
@@ -45,6 +44,7 @@ K12 = coupling("coupling_12", "turn of joint 2 per turn of motor 1", nominal=-0.
 
 A1, A2, A3, A4 = (rotary(f"A{k}", f"turn {k}") for k in (1, 2, 3, 4))
 P1, P2, P3 = (linear(f"P{k}", f"slide {k}") for k in (1, 2, 3))
+STOCK = (A1, A2, A3, A4, P1, P2, P3, L1, L2, L3, PITCH, DIRECTION, K12)
 FOLLOWED = Turning.ABOUT_Z
 ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
@@ -58,12 +58,20 @@ class Invention:
 
 
 def invention(hand: Hand, **description: object) -> Invention:
+    """A description: the joints and the parameters of a chain that are not stated are those that it reads."""
     details = {"name": "Kin_Invented", "vendor": Vendor.TEXTBOOK, "family": "test", "source": "none", "summary": "none"}
-    return Invention(Mechanism(**{**details, **description}), hand)  # type: ignore[arg-type]
+    chain = description.get("chain")
+    read = read_by(chain, STOCK) if isinstance(chain, Chain) else {}
+    return Invention(Mechanism(**{**details, **read, **description}), hand)  # type: ignore[arg-type]
+
+
+def described(**description: object) -> Mechanism:
+    """The same of a description that nobody compares with forward kinematics by hand."""
+    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
 
 
 def planar_arm(**changes: object) -> Mechanism:
-    """The arm with two links in a plane, changed; nobody compares it with forward kinematics by hand."""
+    """The arm with two links in a plane, changed."""
     stated = {
         "parameters": (L1, L2),
         "joints": (A1, A2),
@@ -72,7 +80,7 @@ def planar_arm(**changes: object) -> Mechanism:
         "branches": (ELBOW,),
         "offset_interface": False,
     }
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**stated, **changes}).mechanism
+    return described(**{**stated, **changes})
 
 
 def e(angle: Array) -> Array:
@@ -102,8 +110,6 @@ INVENTIONS = {
             q["P1"],
             q["A1"] + q["A2"] + q["A3"],
         ),
-        parameters=THREE,
-        joints=(A1, P1, A2, A3),
         chain=Rz(A1) * Tz(P1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3) * Tx(L3),
         task=Task("xyz", FOLLOWED),
         branches=(ELBOW,),
@@ -115,8 +121,6 @@ INVENTIONS = {
             0,
             -q["A1"] - q["A2"] - q["A3"],
         ),
-        parameters=THREE,
-        joints=(A1, A2, A3),
         chain=links(-A1, -A2, -A3),
         task=Task("xy", FOLLOWED),
         branches=(branch("elbow", -sin(A2), right=+1, left=-1),),
@@ -127,7 +131,6 @@ INVENTIONS = {
             20 + q["P1"],
             np.pi / 6 + q["A1"] + q["A2"] + q["A3"],
         ),
-        parameters=THREE,
         joints=(A1, A2, P1, A3),
         chain=Txyz(100, -50, 20) * Rz(sp.pi / 6) * Tz(P1) * links(A1, A2, A3) * flip_x(1),
         task=Task("xyz", FOLLOWED),
@@ -139,8 +142,6 @@ INVENTIONS = {
             q["P1"],
             0,
         ),
-        parameters=THREE,
-        joints=(A1, A2, P1),
         chain=Rz(A1) * Ty(L1) * Rz(A2) * Tx(L2) * Ty(L3) * Tz(P1),
         task=Task("xyz"),
         branches=(branch("elbow", L3 * sin(A2) - L2 * cos(A2), right=+1, left=-1),),
@@ -151,16 +152,12 @@ INVENTIONS = {
             0,
             np.pi / 6 + q["A1"] + q["A2"],
         ),
-        parameters=(L1, L3),
-        joints=(P1, A1, A2),
         chain=Rz(sp.pi / 6) * Tx(P1) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L3),
         task=Task("xy", FOLLOWED),
         branches=(branch("side", cos(A1), front=+1, back=-1),),
     ),
     "a telescope with a wrist": invention(
         lambda p, q: (q["P1"] * e(q["A1"]) + p["link_1"] * e(q["A1"] + q["A2"]), 0, q["A1"] + q["A2"]),
-        parameters=(L1,),
-        joints=(A1, P1, A2),
         chain=Rz(A1) * Tx(P1) * Rz(A2) * Tx(L1),
         task=Task("xy", FOLLOWED),
         branches=(branch("reach", P1, front=+1, back=-1),),
@@ -176,7 +173,6 @@ INVENTIONS = {
     ),
     "skewed belts": invention(
         lambda p, q: ((2 * q["P1"] - q["P2"]) / 3 + 1j * (q["P1"] + q["P2"]) / 2, q["P3"] - q["P1"] / 4, 0),
-        joints=(P1, P2, P3),
         chain=Tx((2 * P1 - P2) / 3) * Ty((P1 + P2) / 2) * Tz(P3 - P1 / 4),
         task=Task("xyz"),
     ),
@@ -192,10 +188,7 @@ INVENTIONS = {
         task=Task("xy"),
     ),
     "an oblique slide": invention(
-        lambda p, q: (q["P1"] + e(np.pi / 3) * q["P2"], 0, 0),
-        joints=(P1, P2),
-        chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2),
-        task=Task("xy"),
+        lambda p, q: (q["P1"] + e(np.pi / 3) * q["P2"], 0, 0), chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2), task=Task("xy")
     ),
     "clock angles": invention(
         lambda p, q: (1j * (p["link_1"] * e(-q["A1"]) + p["link_2"] * e(-q["A2"])), 0, 0),
@@ -207,8 +200,6 @@ INVENTIONS = {
     ),
     "all motors in the base": invention(
         lambda p, q: (rrr(p, q["A1"], q["A2"], q["A3"]), 0, q["A3"]),
-        parameters=THREE,
-        joints=(A1, A2, A3),
         chain=links(A1, A2 - A1, A3 - A2),
         task=Task("xy", FOLLOWED),
         branches=(branch("elbow", sin(A2 - A1), right=+1, left=-1),),
@@ -219,8 +210,6 @@ INVENTIONS = {
             0,
             p["direction_a1"] * q["A1"] + q["A2"] + q["A3"],
         ),
-        parameters=(DIRECTION, L1, L2),
-        joints=(A1, A2, A3),
         chain=Rz(DIRECTION * A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3),
         task=Task("xy", FOLLOWED),
         branches=(ELBOW,),
@@ -252,7 +241,6 @@ INVENTIONS = {
             q["P1"] + p["pitch_screw"] * q["A2"] / (2 * np.pi),
             q["A1"] + q["A2"] + q["A4"],
         ),
-        parameters=(L1, L2, PITCH),
         joints=(A1, helical("A2", "carries the lift", limit_range=(-720.0, 720.0), pitch=PITCH), P1, A4),
         chain=Tz(P1 + PITCH * A2 / TURN) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A4),
         task=Task("xyz", FOLLOWED),

@@ -1,7 +1,5 @@
 """A built mechanism, driven numerically: every program through `derive.run`, on many poses at once."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product

@@ -1,17 +1,19 @@
 """Loops whose description names neither branches nor their assembly: both are derived, and mean what they say."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from sympy import cos, pi, sin
 
+from derive.description.joints import Joint
+from derive.description.loops import Rod
 from derive.description.mechanism import (
     DescriptionError,
     Mechanism,
+    Parameter,
     Task,
     X,
     Y,
@@ -42,88 +44,53 @@ def _feet(k: int) -> tuple[object, object, int]:
     return F * cos(2 * pi * k / 3), F * sin(2 * pi * k / 3), 0
 
 
+def _loop(joints: Sequence[Joint], parameters: Sequence[Parameter], *rods: Rod, **more: Any) -> Mechanism:
+    """A loop in a plane, or in space."""
+    task = Task("xy" if len(joints) == 2 else "xyz")
+    return Mechanism("Loop", tuple(joints), task, parameters=tuple(parameters), rods=rods, **more)
+
+
+def _crank(joint: Joint) -> tuple[object, object]:
+    """The end of an arm."""
+    return ARM * cos(joint), ARM * sin(joint)
+
+
 PLAIN, STANDING = ("positive", "negative"), ("above", "below")
+TIP, CYLINDERS = (X, Y, Z), (C1, C2, C3)
 LOOPS: dict[str, tuple[Callable[[], Mechanism], str, int, tuple[str, str]]] = {
     "orthoglide": (
-        lambda: Mechanism(
-            name="Orthoglide",
-            joints=(S1, S2, S3),
-            parameters=(R,),
-            task=Task("xyz"),
-            rods=(
-                rod("1", (S1, 0, 0), (X, Y, Z), R),
-                rod("2", (0, S2, 0), (X, Y, Z), R),
-                rod("3", (0, 0, S3), (X, Y, Z), R),
-            ),
+        lambda: _loop(
+            (S1, S2, S3), (R,), rod("1", (S1, 0, 0), TIP, R), rod("2", (0, S2, 0), TIP, R), rod("3", (0, 0, S3), TIP, R)
         ),
-        "rods_coplanar",
-        8,
-        PLAIN,
+        "rods_coplanar", 8, PLAIN,
     ),
     "three cylinders": (
-        lambda: Mechanism(
-            name="Cylinders",
-            joints=(C1, C2, C3),
-            parameters=(F,),
-            task=Task("xyz"),
-            rods=tuple(rod(str(k + 1), _feet(k), (X, Y, Z), c) for k, c in enumerate((C1, C2, C3))),
-            positive=(C1, C2, C3),
+        lambda: _loop(
+            CYLINDERS, (F,), *(rod(str(k + 1), _feet(k), TIP, c) for k, c in enumerate(CYLINDERS)), positive=CYLINDERS
         ),
-        "rods_coplanar",
-        1,
-        STANDING,
+        "rods_coplanar", 1, STANDING,
     ),
     "two cords": (
-        lambda: Mechanism(
-            name="Cords",
-            joints=(C1, C2),
-            parameters=(F,),
-            task=Task("xy"),
-            rods=(rod("1", (-F, 0), (X, Y), C1), rod("2", (F, 0), (X, Y), C2)),
-            positive=(C1, C2),
+        lambda: _loop(
+            (C1, C2), (F,), rod("1", (-F, 0), (X, Y), C1), rod("2", (F, 0), (X, Y), C2), positive=(C1, C2)
         ),
-        "rods_aligned",
-        1,
-        PLAIN,
+        "rods_aligned", 1, PLAIN,
     ),
     "slides in one line": (
-        lambda: Mechanism(
-            name="OneLine",
-            joints=(S1, S2),
-            parameters=(R,),
-            task=Task("xy"),
-            rods=(rod("1", (S1, 0), (X, Y), R), rod("2", (S2, 0), (X, Y), R)),
-        ),
-        "rods_aligned",
-        1,
-        PLAIN,
+        lambda: _loop((S1, S2), (R,), rod("1", (S1, 0), (X, Y), R), rod("2", (S2, 0), (X, Y), R)),
+        "rods_aligned", 1, PLAIN,
     ),
     "motors in one axis": (
-        lambda: Mechanism(
-            name="OneAxis",
-            joints=(J1, J2),
-            parameters=(ARM, R),
-            task=Task("xy"),
-            rods=tuple(rod(str(k), (ARM * cos(j), ARM * sin(j)), (X, Y), R) for k, j in ((1, J1), (2, J2))),
-        ),
-        "rods_aligned",
-        1,
-        PLAIN,
+        lambda: _loop((J1, J2), (ARM, R), rod("1", _crank(J1), (X, Y), R), rod("2", _crank(J2), (X, Y), R)),
+        "rods_aligned", 1, PLAIN,
     ),
     "a crank and a slide on a quill": (
-        lambda: Mechanism(
-            name="Quill",
-            joints=(J1, S1, S3),
-            parameters=(ARM, R),
-            task=Task("xyz"),
-            closure=(Z - S3,),
-            rods=(rod("1", (ARM * cos(J1), ARM * sin(J1)), (X, Y), R), rod("2", (S1, 0), (X, Y), R)),
+        lambda: _loop(
+            (J1, S1, S3), (ARM, R), rod("1", _crank(J1), (X, Y), R), rod("2", (S1, 0), (X, Y), R), closure=(Z - S3,)
         ),
-        "rods_aligned",
-        4,
-        PLAIN,
+        "rods_aligned", 4, PLAIN,
     ),
-}
+}  # fmt: skip
 """The description, where its two positions meet, and the most solutions that a pose has: of slides in one line, and of
 motors in one axis, equal rods lean to opposite sides."""
 

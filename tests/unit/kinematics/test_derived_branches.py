@@ -1,7 +1,5 @@
 """Branches that no description names: derived, called something, and told in words that are true."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Invented mechanisms from the description to the numbers, through `derive.build` alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """No flag, number of a turn, status or state is a real number in any program of any mechanism."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

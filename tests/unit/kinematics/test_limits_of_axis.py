@@ -1,7 +1,5 @@
 """The limits of an axis and of its drive together: against plain comparisons of numbers, and against `setup` alone."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Machines whose nominal dimensions leave no pose: the refusal names the rod or the quantity, and comes at once."""
 
-from __future__ import annotations
-
 import re
 import time
 from dataclasses import replace
@@ -17,7 +15,7 @@ from derive.mechanism import assembly, branch
 from derive.pipeline import derive_and_measure
 from derive.vectors import cross, dot, minus, vector
 from derive.witness import Disagreement
-from tests.unit.kinematics.inventions import invention
+from tests.unit.kinematics.inventions import described
 
 A1, A2 = rotary("A1", "turn"), rotary("A2", "turn")
 S1, S2 = linear("S1", "slide"), linear("S2", "slide")
@@ -25,10 +23,6 @@ RADIUS = linear("R", "radius", domain=(0.0, 50.0))
 LINK, OTHER = length("link", "link", nominal=300.0), length("other", "link", nominal=200.0)
 ROD, BASE = length("rod_length", "rod", nominal=120.0), length("base", "base", nominal=1800.0)
 P = vector(X, Y)
-
-
-def described(**stated: object) -> Mechanism:
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **stated).mechanism
 
 
 def two_rods(first: Rod, second: Rod, **stated: object) -> Mechanism:

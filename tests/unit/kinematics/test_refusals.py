@@ -1,7 +1,5 @@
 """What the build says of programs that contradict each other: the last checks before the witness, with remedies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -52,9 +50,7 @@ def test_margins_that_do_not_multiply(monkeypatch: pytest.MonkeyPatch) -> None:
     """A margin with half a unit added: no power of it is the determinant."""
     factor = solution.factor_of
     monkeypatch.setattr(
-        solution,
-        "factor_of",
-        lambda m, a: replace(f := factor(m, a), **{"value": f.value + sp.Rational(1, 2)}),
+        solution, "factor_of", lambda m, a: replace(f := factor(m, a), **{"value": f.value + sp.Rational(1, 2)})
     )
     said = refused(lambda: building.build(arm()))
     assert (

@@ -1,7 +1,5 @@
 """Chains without a solution: refused within the bound of work, with joints and amounts in the reason."""
 
-from __future__ import annotations
-
 import random
 import re
 import time

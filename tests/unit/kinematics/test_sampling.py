@@ -1,7 +1,5 @@
 """Poses of machines for the decisions of the build: a loop closes at few of the joint values that are drawn."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The joint that is searched where no subproblem solves a chain, and the branches of its trial."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The setup computes each value of the parameters once."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 import pytest

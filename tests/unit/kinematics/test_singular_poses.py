@@ -1,7 +1,5 @@
 """Where two branches meet and where a joint is free: both slots hold the same solution, the rest is solved with it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Slopes by automatic differentiation: those of every primitive are what a small step measures, on either side."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """Invented loops that turn their platforms: derived, measured by the witness, and executed in both languages."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Loops that turn their platforms, for which the derivation was not tuned."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import sympy as sp

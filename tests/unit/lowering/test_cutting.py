@@ -1,7 +1,5 @@
 """Long statements are cut into named parts, and long names are shortened; the values stay the same."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,8 +1,6 @@
 """Fewer operations, the same values: what is hoisted, factored, shared and divided once; random programs before and
 after."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """Programs of which every axis may be in any turn: mirrored branches share their angles, and nothing is inverted."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from derive.ir.constants import DEGREE

@@ -1,7 +1,5 @@
 """Scheduling: what only one side of a choice needs is computed there only."""
 
-from __future__ import annotations
-
 import sympy as sp
 
 from derive.ir.passes import normalise

@@ -1,7 +1,5 @@
 """Mirrored branches: the program before and after, and the same answers."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

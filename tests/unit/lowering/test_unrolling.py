@@ -1,8 +1,6 @@
 """All branches in one straight line: the same answers as the branches one by one, and every statement as often as
 needed."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

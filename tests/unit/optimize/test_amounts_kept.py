@@ -1,7 +1,5 @@
 """Programs that are rewritten tell the same amounts."""
 
-from __future__ import annotations
-
 import numpy as np
 import sympy as sp
 

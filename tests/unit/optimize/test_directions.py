@@ -1,7 +1,5 @@
 """Shorter inverses: the program before and after, and the same answers."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

@@ -1,7 +1,5 @@
 """Choices that an earlier one decides: what is read behind a choice, both of its sides bind."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import pytest

@@ -1,7 +1,5 @@
 """Passes: each with the program before and after."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

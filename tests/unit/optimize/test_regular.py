@@ -1,7 +1,5 @@
 """Programs of regular poses: what they answer is what the whole program answers, and elsewhere they say so."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Cross products of columns: the program before and after, on rotations, and where the direction is free."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """The angle of (k x, k y) is that of (x, y) where k is proven to be positive, and nowhere else."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

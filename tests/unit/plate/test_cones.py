@@ -1,7 +1,5 @@
 """The cones of a rod's joints: valid descriptions, and cones that differ from rod to rod."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The home pose of a platform may be stated by a length, whose sign the solver knows."""
 
-from __future__ import annotations
-
 import pytest
 import sympy as sp
 

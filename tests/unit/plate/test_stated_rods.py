@@ -1,7 +1,5 @@
 """Turning loops whose equations are stated without rods: read as rods where they are, else refused with the reason."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 

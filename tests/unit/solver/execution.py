@@ -1,7 +1,5 @@
 """Small problems for one rule, and the execution of its statements on numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

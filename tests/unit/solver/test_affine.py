@@ -1,7 +1,5 @@
 """Affine: k v + c = 0 has one root; where k can vanish the rule does not apply."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """Affine systems: lengths in as many equations have one solution where the determinant never vanishes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Eliminations: every solution of the equations solves the new ones, too, which have fewer unknowns."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Arms that no rule solves: refused with the reason, before large expressions are written out."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

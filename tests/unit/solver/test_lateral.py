@@ -1,7 +1,5 @@
 """Lateral: an arm, with or without a lateral offset, that must reach a commanded point."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import sympy as sp

@@ -1,7 +1,5 @@
 """Pair: two equations, linear in the cosine and sine of one angle, have one root."""
 
-from __future__ import annotations
-
 from math import cos, sin
 
 import numpy as np

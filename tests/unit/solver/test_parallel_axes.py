@@ -1,7 +1,5 @@
 """Parallel axes: a sum of angles takes the place of one of them, which follows at the end."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -24,10 +22,7 @@ X, Y = real("x"), real("y")
 L = sp.Symbol("link", positive=True)
 
 CLOSURE = problem(
-    L * sp.cos(A1) + sp.cos(A1 + A2) - X,
-    sp.sin(A1 + A2 + A3) - Y,
-    L * sp.sin(A3 - A1) + A2 - X,
-    angles=ANGLE_NAMES,
+    L * sp.cos(A1) + sp.cos(A1 + A2) - X, sp.sin(A1 + A2 + A3) - Y, L * sp.sin(A3 - A1) + A2 - X, angles=ANGLE_NAMES
 )
 SUMS = {
     "a1 + a2": (((A1, 1), (A2, 1)), A2),

@@ -1,7 +1,5 @@
 """Polar: f cos v = a, f sin v = b with both unknown has two roots, or one where f is positive."""
 
-from __future__ import annotations
-
 from math import cos, hypot, sin
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The missing amount where a two-root step has no root, against the triangle that does not close."""
 
-from __future__ import annotations
-
 import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st

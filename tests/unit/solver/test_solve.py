@@ -1,7 +1,5 @@
 """The driver: problems that no mechanism of the catalogue has, solved, or refused with the equations left."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Trigonometric: a cos u + b sin u = e has two roots, told apart by the sign of the determinant."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

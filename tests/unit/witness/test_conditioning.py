@@ -1,7 +1,5 @@
 """Machines that are never well conditioned: the witness accepts their right formulas, and still refuses wrong ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -18,7 +16,7 @@ from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import Turning
 from derive.witness import Disagreement, witness
-from tests.unit.kinematics.inventions import invention
+from tests.unit.kinematics.inventions import described as invented
 
 pytestmark = pytest.mark.slow
 
@@ -34,7 +32,7 @@ def links(*sizes: float) -> tuple[Parameter, ...]:
 
 def described(chain: Chain, **stated: object) -> Mechanism:
     common = {"chain": chain, "offset_interface": False}
-    return validate(invention(lambda p, q: (p["x"], p["x"], p["x"]), **{**common, **stated}).mechanism)
+    return validate(invented(**{**common, **stated}))
 
 
 def planar(*sizes: float) -> Mechanism:

@@ -1,7 +1,5 @@
 """The check in a finite field: right formulas hold exactly, and what is wrong by the last digit does not."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -58,14 +56,20 @@ def test_angles_add(one: int, other: int, slope: int) -> None:
     assert (2 * of_angle(60_000)[1] - root_of_whole(3)) % PRIME == 0
 
 
+def test_a_length_may_have_the_name_of_a_joint() -> None:
+    """As in tables of Denavit-Hartenberg parameters: the length a1 is not the angle of A1."""
+    first, second = (length(f"a{k}", f"Link {k}", nominal=300.0) for k in (1, 2))
+    joints = tuple(rotary(f"A{k}", f"Arm {k}") for k in (1, 2))
+    chain = Rz(joints[0]) * Tx(first) * Rz(joints[1]) * Tx(second)
+    arm = validate(Mechanism(name="Arm", parameters=(first, second), joints=joints, chain=chain, task=Task("xy")))
+    exact = check_exactly(build(arm), arm)
+    assert (exact.trials, exact.but, exact.what) == (3, "", "equations")
+
+
 PROVEN = {
-    "Kin_Scara4_ZCcoupled_Type1": "",
-    "Kin_ArticulatedRobot_6DOF": "",
-    "Kin_SCCC": "",
-    "MC_KIN_TYPE_12_XY": "",
-    "Kin_Crane": "",
-    "Kin_Hexapod": "forward kinematics iterates",
-}
+    "Kin_Scara4_ZCcoupled_Type1": "", "Kin_ArticulatedRobot_6DOF": "", "Kin_SCCC": "", "MC_KIN_TYPE_12_XY": "",
+    "Kin_Crane": "", "Kin_Hexapod": "forward kinematics iterates",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", PROVEN)

@@ -1,7 +1,5 @@
 """The check in a finite field refuses no machine for how its numbers are written, and proves none that is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from random import Random

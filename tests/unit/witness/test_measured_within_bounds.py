@@ -1,7 +1,5 @@
 """The measurement of a machine ends within its bound of work, with a refusal that names the stage and what to do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import inf
 
@@ -18,11 +16,7 @@ from derive.work import STEPS, at_most
 from tests.unit.kinematics.inventions import A1, A2, L1, L2
 
 ARM = Mechanism(
-    name="Arm",
-    parameters=(L1, L2),
-    joints=(A1, A2),
-    chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-    task=Task("xy"),
+    name="Arm", parameters=(L1, L2), joints=(A1, A2), chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2), task=Task("xy")
 )
 
 

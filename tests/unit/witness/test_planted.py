@@ -1,7 +1,5 @@
 """Poses next to where the branches of a search meet, of an arm on a turntable that is held."""
 
-from __future__ import annotations
-
 import pytest
 
 from derive.description.mechanism import Mechanism, Task, Turning, rotary

@@ -4,8 +4,6 @@ It compares with the description as it is written. So a length that is read as a
 and a rod that is read elsewhere contradict it, however consistent all that is derived from them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 

@@ -1,13 +1,11 @@
 """What the witness says of programs that are wrong in a way of their own: searches, modes, tilts, frames alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import Branch, Mechanism, Task
+from derive.description.mechanism import Branch, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
@@ -18,11 +16,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import search
 from derive.witness import Disagreement, inverse, witness
 from tests.mechanisms import kinematics_of, named
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, invention
-
-
-def described(**stated: object) -> Mechanism:
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **stated).mechanism
+from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, described
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """The unit and the size of a machine change no verdict; a solution is found where Newton's method ends, not before."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

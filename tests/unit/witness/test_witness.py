@@ -1,7 +1,5 @@
 """The witness accepts right formulas, and refuses every kind of wrong one by name."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

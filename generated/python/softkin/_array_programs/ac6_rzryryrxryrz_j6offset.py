@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8405
+    VALUES = 8613
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -462,14 +462,14 @@ class ArrayPrograms(Programs):
             + sum_in_rounding_0_8
             + absolute(wave_cos_0)
         )
-        size_of_wave_cos_9_times_32 = 32.0 * absolute(wave_cos_9)
-        rounding_1 = select(size_of_wave_cos_9_times_32 > rounding_0, size_of_wave_cos_9_times_32, rounding_0)
-        size_of_wave_cos_10_times_32 = 32.0 * absolute(wave_cos_10)
-        rounding_2 = select(size_of_wave_cos_10_times_32 > rounding_1, size_of_wave_cos_10_times_32, rounding_1)
-        size_of_wave_sin_9_times_32 = 32.0 * absolute(wave_sin_9)
-        rounding_3 = select(size_of_wave_sin_9_times_32 > rounding_2, size_of_wave_sin_9_times_32, rounding_2)
-        size_of_wave_sin_10_times_32 = 32.0 * absolute(wave_sin_10)
-        rounding_4 = select(size_of_wave_sin_10_times_32 > rounding_3, size_of_wave_sin_10_times_32, rounding_3)
+        size_of_wave_cos_9_times_1000 = 1000.0 * absolute(wave_cos_9)
+        rounding_1 = select(size_of_wave_cos_9_times_1000 > rounding_0, size_of_wave_cos_9_times_1000, rounding_0)
+        size_of_wave_cos_10_times_1000 = 1000.0 * absolute(wave_cos_10)
+        rounding_2 = select(size_of_wave_cos_10_times_1000 > rounding_1, size_of_wave_cos_10_times_1000, rounding_1)
+        size_of_wave_sin_9_times_1000 = 1000.0 * absolute(wave_sin_9)
+        rounding_3 = select(size_of_wave_sin_9_times_1000 > rounding_2, size_of_wave_sin_9_times_1000, rounding_2)
+        size_of_wave_sin_10_times_1000 = 1000.0 * absolute(wave_sin_10)
+        rounding_4 = select(size_of_wave_sin_10_times_1000 > rounding_3, size_of_wave_sin_10_times_1000, rounding_3)
         sum_in_bound_of_fifth = (
             2.025 * sum_in_rounding_0_2
             + 64.8 * sum_in_rounding_0_3
@@ -1531,6 +1531,12 @@ class ArrayPrograms(Programs):
             last,
             growth_before,
             bend,
+            settled_1,
+            settled_2,
+            settled_3,
+            settled_4,
+            settled_5,
+            settled_6,
             q1,
             met_from_q1,
             kept_q1,
@@ -1562,7 +1568,7 @@ class ArrayPrograms(Programs):
             0,
             False,
             9.0,
-            2000,
+            1500,
             0.0,
             0,
             0.0,
@@ -1571,6 +1577,12 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
             0.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
+            9.0,
             0.0,
             0.0,
             0.0,
@@ -1590,7 +1602,7 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
         )
-        for _ in range(2001):
+        for _ in range(1501):
             place_plus_width = place + width
             found = run_where(
                 stage == 0,
@@ -1664,8 +1676,19 @@ class ArrayPrograms(Programs):
                 place,
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
-            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 8) | (absolute(at - newton_place) <= 1e-10))
-            is_near = is_settled & ((width > 1e-6) | ((least_now <= 0.001) & ((room_of_trial <= 1e-6) | (side > 0))))
+            is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 5) | (absolute(at - newton_place) <= 1e-10))
+            is_known = (
+                (absolute(best_now - settled_1) <= 1e-9)
+                | (absolute(best_now - settled_2) <= 1e-9)
+                | (absolute(best_now - settled_3) <= 1e-9)
+                | (absolute(best_now - settled_4) <= 1e-9)
+                | (absolute(best_now - settled_5) <= 1e-9)
+                | (absolute(best_now - settled_6) <= 1e-9)
+            )
+            is_near = is_settled & (
+                ((opposite(is_known)) & (width > 1e-6))
+                | ((least_now <= 0.001) & (width <= 1e-6) & ((room_of_trial <= 1e-6) | (side > 0)))
+            )
             found = run_where(
                 is_near,
                 self.joints_at,
@@ -1743,7 +1766,7 @@ class ArrayPrograms(Programs):
                 )
             )
             start_minus_q6 = start - q6
-            distance = select(
+            way_ahead = select(
                 onward,
                 1e-7
                 + 180.0 * DEGREE
@@ -1753,11 +1776,11 @@ class ArrayPrograms(Programs):
             is_better = (
                 fits
                 & meets_pose
-                & (distance < nearest)
-                & ((opposite(onward)) | ((distance > 1e-7) & (distance < sum_in_way_ends)))
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
             )
-            nearest_now = select(is_better, distance, nearest)
-            is_shortest = (stage == 1) & (trials >= 21)
+            nearest_now = select(is_better, way_ahead, nearest)
+            is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
                 + absolute(met_from_q2 - q2)
@@ -1771,7 +1794,7 @@ class ArrayPrograms(Programs):
             start_ends = (is_settled & (opposite(is_near))) | (steps_end & (opposite(mirrors)))
             number_of_start_plus_one = 1 + number_of_start
             next_number = select(
-                number_of_start < select(width <= 1e-9, 1, select(width <= 0.0001, 3, select(width <= 0.01, 5, 9))),
+                number_of_start < select(width <= 1e-9, 1, select(width <= 0.001, 3, select(width <= 0.1, 5, 9))),
                 number_of_start_plus_one,
                 select(
                     number_of_start <= 9,
@@ -1823,7 +1846,7 @@ class ArrayPrograms(Programs):
                     0.0,
                     select(
                         (opposite(part_ends)) & (stage == 0),
-                        select(width > 0.0, 2.0 * width, select(is_rounding, 1e-13, 0.0)),
+                        select(width > 0.0, select(width <= 1e-6, 8.0, 2.0) * width, select(is_rounding, 1e-13, 0.0)),
                         width,
                     ),
                 ),
@@ -1834,8 +1857,8 @@ class ArrayPrograms(Programs):
             gap = growth - growth_before
             way_of_trial = at - last
             bend_now = select(
-                (trials > 9) & (gap * way_of_trial > 0.0),
-                gap / select((trials > 9) & (gap * way_of_trial > 0.0), way_of_trial, 1.0),
+                (trials > 5) & (gap * way_of_trial > 0.0),
+                gap / select((trials > 5) & (gap * way_of_trial > 0.0), way_of_trial, 1.0),
                 bend,
             )
             bend_now_2 = select(bend_now > 0.0, bend_now, 1.0)
@@ -1844,15 +1867,15 @@ class ArrayPrograms(Programs):
             steps_left_next = select(is_near | mirrors, 64, steps_left + select(error > 0.999 * error_before, -8, -1))
             was_mirrored_next = (opposite(is_near)) & (mirrors | was_mirrored)
             passes_left_next = passes_left - 1
-            spread = 0.125 * width
+            spread = 0.25 * width
             spread_times_1_by_4 = 0.25 * spread
             best_now_plus_spread_times_1_by_4 = best_now + spread_times_1_by_4
             at_minus_growth_by_bend_now = at - growth / bend_now_2
             value_in_shortening_place = select(
-                trials < 9,
+                trials < 5,
                 best_now,
                 select(
-                    trials == 9,
+                    trials == 5,
                     select(
                         best_now_plus_spread_times_1_by_4 > place_plus_width,
                         best_now - spread_times_1_by_4,
@@ -1869,7 +1892,7 @@ class ArrayPrograms(Programs):
                     ),
                 ),
             )
-            shortening_place = select(trials < 8, place + (1.0 + trials) * spread, value_in_shortening_place)
+            shortening_place = select(trials < 4, place + (1.0 + trials) * spread, value_in_shortening_place)
             sum_in_place_of_start = (
                 place
                 + select(
@@ -1925,24 +1948,30 @@ class ArrayPrograms(Programs):
             last_next = select(begins | is_shortest, place_of_start, at)
             growth_before_next = select(begins | is_shortest, 0.0, growth)
             bend_next = select(begins | is_shortest, 0.0, bend_now)
+            settled_1_next = select(is_first, 9.0, select(is_near, best_now, settled_1))
+            settled_2_next = select(is_first, 9.0, select(is_near, settled_1, settled_2))
+            settled_3_next = select(is_first, 9.0, select(is_near, settled_2, settled_3))
+            settled_4_next = select(is_first, 9.0, select(is_near, settled_3, settled_4))
+            settled_5_next = select(is_first, 9.0, select(is_near, settled_4, settled_5))
+            settled_6_next = select(is_first, 9.0, select(is_near, settled_5, settled_6))
             q1_next = select(is_near, begun_q1, select(mirrors, 2.0 * met_from_q1 - q1, moved_q1))
             met_from_q1_next = select(is_near, begun_q1, met_from_q1)
-            kept_q1_next = select(is_better, q1, kept_q1)
+            kept_now_q1 = select(is_better, q1, kept_q1)
             q2_next = select(is_near, begun_q2, select(mirrors, 2.0 * met_from_q2 - q2, moved_q2))
             met_from_q2_next = select(is_near, begun_q2, met_from_q2)
-            kept_q2_next = select(is_better, q2, kept_q2)
+            kept_now_q2 = select(is_better, q2, kept_q2)
             q3_next = select(is_near, begun_q3, select(mirrors, 2.0 * met_from_q3 - q3, moved_q3))
             met_from_q3_next = select(is_near, begun_q3, met_from_q3)
-            kept_q3_next = select(is_better, q3, kept_q3)
+            kept_now_q3 = select(is_better, q3, kept_q3)
             q4_next = select(is_near, begun_q4, select(mirrors, 2.0 * met_from_q4 - q4, moved_q4))
             met_from_q4_next = select(is_near, begun_q4, met_from_q4)
-            kept_q4_next = select(is_better, q4, kept_q4)
+            kept_now_q4 = select(is_better, q4, kept_q4)
             q5_next = select(is_near, begun_q5, select(mirrors, 2.0 * met_from_q5 - q5, moved_q5))
             met_from_q5_next = select(is_near, begun_q5, met_from_q5)
-            kept_q5_next = select(is_better, q5, kept_q5)
+            kept_now_q5 = select(is_better, q5, kept_q5)
             q6_next = select(is_near, begun_q6, select(mirrors, 2.0 * met_from_q6 - q6, moved_q6))
             met_from_q6_next = select(is_near, begun_q6, met_from_q6)
-            kept_q6_next = select(is_better, q6, kept_q6)
+            kept_now_q6 = select(is_better, q6, kept_q6)
             done = is_over | (opposite(looked_for))
             if settled(done, status):
                 break
@@ -1968,6 +1997,12 @@ class ArrayPrograms(Programs):
                 last,
                 growth_before,
                 bend,
+                settled_1,
+                settled_2,
+                settled_3,
+                settled_4,
+                settled_5,
+                settled_6,
                 q1,
                 met_from_q1,
                 kept_q1,
@@ -2010,6 +2045,12 @@ class ArrayPrograms(Programs):
                     last,
                     growth_before,
                     bend,
+                    settled_1,
+                    settled_2,
+                    settled_3,
+                    settled_4,
+                    settled_5,
+                    settled_6,
                     q1,
                     met_from_q1,
                     kept_q1,
@@ -2051,35 +2092,41 @@ class ArrayPrograms(Programs):
                     last_next,
                     growth_before_next,
                     bend_next,
+                    settled_1_next,
+                    settled_2_next,
+                    settled_3_next,
+                    settled_4_next,
+                    settled_5_next,
+                    settled_6_next,
                     q1_next,
                     met_from_q1_next,
-                    kept_q1_next,
+                    kept_now_q1,
                     q2_next,
                     met_from_q2_next,
-                    kept_q2_next,
+                    kept_now_q2,
                     q3_next,
                     met_from_q3_next,
-                    kept_q3_next,
+                    kept_now_q3,
                     q4_next,
                     met_from_q4_next,
-                    kept_q4_next,
+                    kept_now_q4,
                     q5_next,
                     met_from_q5_next,
-                    kept_q5_next,
+                    kept_now_q5,
                     q6_next,
                     met_from_q6_next,
-                    kept_q6_next,
+                    kept_now_q6,
                 ),
             )
         return (
             nearest_now < 9.0,
             select(nearest_now < 9.0, nearest_now, 0.0),
-            kept_q1,
-            kept_q2,
-            kept_q3,
-            kept_q4,
-            kept_q5,
-            kept_q6,
+            kept_now_q1,
+            kept_now_q2,
+            kept_now_q3,
+            kept_now_q4,
+            kept_now_q5,
+            kept_now_q6,
         )
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
@@ -2693,4 +2740,280 @@ class ArrayPrograms(Programs):
             (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
             (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
             (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+        ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                speed_a1,
+                speed_a2,
+                speed_a3,
+                speed_a4,
+                speed_a5,
+                speed_a6,
+            ),
+            Status.BAD_INPUT,
+        )
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r21_at_q23 = cos_q23 * sin_q1
+        cos_q1 = cos(q1)
+        sin_q23 = sin(q2_plus_q3)
+        y_at_q2 = k.a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        r23_at_q23 = sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        rate_of_sin_q1 = speed_a1 * cos_q1
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_cos_q23 = -speed_a2_plus_speed_a3 * sin_q23
+        rate_of_r21_at_q23 = rate_of_sin_q1 * cos_q23 + rate_of_cos_q23 * sin_q1
+        rate_of_cos_q1 = -speed_a1 * sin_q1
+        rate_of_sin_q23 = speed_a2_plus_speed_a3 * cos_q23
+        rate_of_r23_at_q23 = rate_of_sin_q1 * sin_q23 + rate_of_sin_q23 * sin_q1
+        rate_of_sin_q4 = speed_a4 * cos_q4
+        rate_of_cos_q4 = -speed_a4 * sin_q4
+        rate_of_r23_at_q4 = (
+            rate_of_r23_at_q23 * cos_q4
+            + r23_at_q23 * rate_of_cos_q4
+            - rate_of_sin_q4 * cos_q1
+            - rate_of_cos_q1 * sin_q4
+        )
+        rate_of_sin_q5 = speed_a5 * cos_q5
+        rate_of_cos_q5 = -speed_a5 * sin_q5
+        rate_of_r23_at_q5 = (
+            rate_of_r23_at_q4 * cos_q5
+            + r21_at_q23 * rate_of_sin_q5
+            + r23_at_q4 * rate_of_cos_q5
+            + rate_of_r21_at_q23 * sin_q5
+        )
+        rate_of_y_at_q2 = k.a1 * rate_of_sin_q1
+        cos_q2 = cos(q2)
+        rate_of_sin_q2 = speed_a2 * cos_q2
+        rate_of_r23_at_q2 = rate_of_sin_q1 * sin_q2 + rate_of_sin_q2 * sin_q1
+        rate_of_y_at_q3 = rate_of_y_at_q2 + k.a2 * rate_of_r23_at_q2
+        rate_of_y_at_q4 = rate_of_y_at_q3 + k.a3 * rate_of_r23_at_q23
+        rate_of_y_at_q5 = rate_of_y_at_q4 + k.d4 * rate_of_r21_at_q23
+        rate_of_r21_at_q5 = (
+            rate_of_r21_at_q23 * cos_q5
+            + r21_at_q23 * rate_of_cos_q5
+            - r23_at_q4 * rate_of_sin_q5
+            - rate_of_r23_at_q4 * sin_q5
+        )
+        rate_of_y_at_q6 = rate_of_y_at_q5 + k.j6_offset_x * rate_of_r21_at_q5
+        rate_of_y = rate_of_y_at_q6 + k.d6 * rate_of_r23_at_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        rate_of_r33_at_q4 = rate_of_cos_q4 * cos_q23 + rate_of_cos_q23 * cos_q4
+        rate_of_r33_at_q5 = (
+            rate_of_r33_at_q4 * cos_q5
+            + r33_at_q4 * rate_of_cos_q5
+            - rate_of_sin_q23 * sin_q5
+            - rate_of_sin_q5 * sin_q23
+        )
+        rate_of_cos_q2 = -speed_a2 * sin_q2
+        rate_of_z_at_q3 = k.a2 * rate_of_cos_q2
+        rate_of_z_at_q4 = rate_of_z_at_q3 + k.a3 * rate_of_cos_q23
+        rate_of_z_at_q5 = rate_of_z_at_q4 - k.d4 * rate_of_sin_q23
+        rate_of_r31_at_q5 = (
+            -rate_of_sin_q23 * cos_q5
+            - r33_at_q4 * rate_of_sin_q5
+            - rate_of_cos_q5 * sin_q23
+            - rate_of_r33_at_q4 * sin_q5
+        )
+        rate_of_z_at_q6 = rate_of_z_at_q5 + k.j6_offset_x * rate_of_r31_at_q5
+        rate_of_z = rate_of_z_at_q6 + k.d6 * rate_of_r33_at_q5
+        rate_of_r22_at_q4 = (
+            rate_of_cos_q4 * cos_q1
+            + rate_of_cos_q1 * cos_q4
+            + r23_at_q23 * rate_of_sin_q4
+            + rate_of_r23_at_q23 * sin_q4
+        )
+        rate_of_r32_at_q4 = rate_of_sin_q4 * cos_q23 + rate_of_cos_q23 * sin_q4
+        r11_at_q23 = cos_q1 * cos_q23
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        r13_at_q23 = cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        rate_of_r11_at_q23 = rate_of_cos_q23 * cos_q1 + rate_of_cos_q1 * cos_q23
+        rate_of_r13_at_q23 = rate_of_sin_q23 * cos_q1 + rate_of_cos_q1 * sin_q23
+        rate_of_r13_at_q4 = (
+            rate_of_r13_at_q23 * cos_q4
+            + r13_at_q23 * rate_of_cos_q4
+            + rate_of_sin_q1 * sin_q4
+            + rate_of_sin_q4 * sin_q1
+        )
+        rate_of_r13_at_q5 = (
+            rate_of_r13_at_q4 * cos_q5
+            + r11_at_q23 * rate_of_sin_q5
+            + r13_at_q4 * rate_of_cos_q5
+            + rate_of_r11_at_q23 * sin_q5
+        )
+        rate_of_x_at_q2 = k.a1 * rate_of_cos_q1
+        rate_of_r13_at_q2 = rate_of_sin_q2 * cos_q1 + rate_of_cos_q1 * sin_q2
+        rate_of_x_at_q3 = rate_of_x_at_q2 + k.a2 * rate_of_r13_at_q2
+        rate_of_x_at_q4 = rate_of_x_at_q3 + k.a3 * rate_of_r13_at_q23
+        rate_of_x_at_q5 = rate_of_x_at_q4 + k.d4 * rate_of_r11_at_q23
+        rate_of_r11_at_q5 = (
+            rate_of_r11_at_q23 * cos_q5
+            + r11_at_q23 * rate_of_cos_q5
+            - r13_at_q4 * rate_of_sin_q5
+            - rate_of_r13_at_q4 * sin_q5
+        )
+        rate_of_x_at_q6 = rate_of_x_at_q5 + k.j6_offset_x * rate_of_r11_at_q5
+        rate_of_x = rate_of_x_at_q6 + k.d6 * rate_of_r13_at_q5
+        rate_of_r12_at_q4 = (
+            r13_at_q23 * rate_of_sin_q4
+            + rate_of_r13_at_q23 * sin_q4
+            - rate_of_sin_q1 * cos_q4
+            - rate_of_cos_q4 * sin_q1
+        )
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        x_minus_x_at_q4 = x - x_at_q4
+        shared_sum = (k.d1 - z) * speed_a2 + (z_at_q3 - z) * speed_a3
+        r32_at_q4 = cos_q23 * sin_q4
+        shared_sum_2 = speed_a1 + r32_at_q4 * speed_a5 + r33_at_q5 * speed_a6 - speed_a4 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        shared_sum_3 = (
+            speed_a2_plus_speed_a3 * cos_q1 + r21_at_q23 * speed_a4 + r22_at_q4 * speed_a5 + r23_at_q5 * speed_a6
+        )
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        shared_sum_4 = (
+            r11_at_q23 * speed_a4 + r12_at_q4 * speed_a5 + r13_at_q5 * speed_a6 - speed_a2_plus_speed_a3 * sin_q1
+        )
+        speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3 * speed_a3
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        shared_sum_5 = (
+            r32_at_q4 * rate_of_y_at_q5
+            + rate_of_r22_at_q4 * z_minus_z_at_q5
+            - r22_at_q4 * rate_of_z_at_q5
+            - rate_of_r32_at_q4 * y_minus_y_at_q5
+        ) * speed_a5 + (
+            r33_at_q5 * rate_of_y_at_q6
+            + rate_of_r23_at_q5 * z_minus_z_at_q6
+            - r23_at_q5 * rate_of_z_at_q6
+            - rate_of_r33_at_q5 * y_minus_y_at_q6
+        ) * speed_a6
+        x_minus_x_at_q5 = x - x_at_q5
+        x_minus_x_at_q6 = x - x_at_q6
+        shared_sum_6 = (
+            r32_at_q4 * rate_of_x_at_q5
+            + rate_of_r12_at_q4 * z_minus_z_at_q5
+            - r12_at_q4 * rate_of_z_at_q5
+            - rate_of_r32_at_q4 * x_minus_x_at_q5
+        ) * speed_a5 + (
+            r33_at_q5 * rate_of_x_at_q6
+            + rate_of_r13_at_q5 * z_minus_z_at_q6
+            - r13_at_q5 * rate_of_z_at_q6
+            - rate_of_r33_at_q5 * x_minus_x_at_q6
+        ) * speed_a6
+        shared_sum_8 = (
+            (rate_of_x_at_q2 * speed_a2 + rate_of_x_at_q3 * speed_a3) * cos_q1
+            + (rate_of_y_at_q2 * speed_a2 + rate_of_y_at_q3 * speed_a3) * sin_q1
+            + (
+                r23_at_q5 * rate_of_x_at_q6
+                + rate_of_r13_at_q5 * y_minus_y_at_q6
+                - r13_at_q5 * rate_of_y_at_q6
+                - rate_of_r23_at_q5 * x_minus_x_at_q6
+            )
+            * speed_a6
+        )
+        shared_sum_7 = (
+            r11_at_q23 * rate_of_y_at_q4
+            + rate_of_r21_at_q23 * x_minus_x_at_q4
+            - r21_at_q23 * rate_of_x_at_q4
+            - rate_of_r11_at_q23 * y_minus_y_at_q4
+        ) * speed_a4 + (
+            r12_at_q4 * rate_of_y_at_q5
+            + rate_of_r22_at_q4 * x_minus_x_at_q5
+            - r22_at_q4 * rate_of_x_at_q5
+            - rate_of_r12_at_q4 * y_minus_y_at_q5
+        ) * speed_a5
+        return (
+            shared_sum_5
+            + rate_of_z * shared_sum_3
+            + (
+                rate_of_r21_at_q23 * z_minus_z_at_q4
+                + rate_of_sin_q23 * y_minus_y_at_q4
+                - r21_at_q23 * rate_of_z_at_q4
+                - rate_of_y_at_q4 * sin_q23
+            )
+            * speed_a4
+            - speed_a3_times_rate_of_z_at_q3 * cos_q1
+            - rate_of_cos_q1 * shared_sum
+            - rate_of_y * shared_sum_2,
+            rate_of_x * shared_sum_2
+            + (
+                r11_at_q23 * rate_of_z_at_q4
+                + rate_of_x_at_q4 * sin_q23
+                - rate_of_r11_at_q23 * z_minus_z_at_q4
+                - rate_of_sin_q23 * x_minus_x_at_q4
+            )
+            * speed_a4
+            - shared_sum_6
+            - rate_of_sin_q1 * shared_sum
+            - rate_of_z * shared_sum_4
+            - speed_a3_times_rate_of_z_at_q3 * sin_q1,
+            shared_sum_8
+            + rate_of_cos_q1 * ((x_at_q2 - x) * speed_a2 + (x_at_q3 - x) * speed_a3)
+            + rate_of_sin_q1 * ((y_at_q2 - y) * speed_a2 + (y_at_q3 - y) * speed_a3)
+            + rate_of_y * shared_sum_4
+            - shared_sum_7
+            - rate_of_x * shared_sum_3,
+            rate_of_r11_at_q23 * speed_a4
+            + rate_of_r12_at_q4 * speed_a5
+            + rate_of_r13_at_q5 * speed_a6
+            - rate_of_sin_q1 * speed_a2_plus_speed_a3,
+            rate_of_cos_q1 * speed_a2_plus_speed_a3
+            + rate_of_r21_at_q23 * speed_a4
+            + rate_of_r22_at_q4 * speed_a5
+            + rate_of_r23_at_q5 * speed_a6,
+            rate_of_r32_at_q4 * speed_a5 + rate_of_r33_at_q5 * speed_a6 - rate_of_sin_q23 * speed_a4,
         ), status

@@ -201,3 +201,116 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 1.0, 0.0, -sin_a5),
             (0.0, 0.0, 0.0, 0.0, -sin_a4, r33_at_a5),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                speed_a1,
+                speed_a2,
+                speed_a3,
+                speed_a4,
+                speed_a5,
+                speed_a6,
+            ),
+            Status.BAD_INPUT,
+        )
+        a3 = axis_a3 - k.offset_a3
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
+        cos_a4 = cos(a4)
+        a5 = DEGREE * (axis_a5 - k.offset_a5)
+        cos_a5 = cos(a5)
+        r33_at_a5 = cos_a4 * cos_a5
+        sin_a4 = sin(a4)
+        sin_a5 = sin(a5)
+        r32_at_a5 = cos_a4 * sin_a5
+        a6 = DEGREE * (axis_a6 - k.offset_a6)
+        sin_a6 = sin(a6)
+        cos_a6 = cos(a6)
+        r31_at_a6 = r32_at_a5 * sin_a6 - cos_a6 * sin_a4
+        r32_at_a6 = r32_at_a5 * cos_a6 + sin_a4 * sin_a6
+        z = a3 + k.flange_x * r31_at_a6 + k.flange_y * r32_at_a6 + k.flange_z * r33_at_a5
+        z_minus_a3 = z - a3
+        a2 = axis_a2 - k.offset_a2
+        r21_at_a6 = cos_a5 * sin_a6
+        r22_at_a6 = cos_a5 * cos_a6
+        y = a2 + k.flange_x * r21_at_a6 + k.flange_y * r22_at_a6 - k.flange_z * sin_a5
+        y_minus_a2 = y - a2
+        a1 = axis_a1 - k.offset_a1
+        r13_at_a5 = cos_a5 * sin_a4
+        r12_at_a5 = sin_a4 * sin_a5
+        r11_at_a6 = cos_a4 * cos_a6 + r12_at_a5 * sin_a6
+        r12_at_a6 = r12_at_a5 * cos_a6 - cos_a4 * sin_a6
+        x = a1 + k.flange_x * r11_at_a6 + k.flange_y * r12_at_a6 + k.flange_z * r13_at_a5
+        x_minus_a1 = x - a1
+        shared_sum = speed_a5 * sin_a4 - r33_at_a5 * speed_a6
+        speed_a4_minus_sin_a5_times_speed_a6 = speed_a4 - speed_a6 * sin_a5
+        shared_sum_2 = speed_a5 * cos_a4 + r13_at_a5 * speed_a6
+        rate_of_cos_a4 = -speed_a4 * sin_a4
+        rate_of_cos_a5 = -speed_a5 * sin_a5
+        rate_of_sin_a4 = speed_a4 * cos_a4
+        rate_of_r13_at_a5 = rate_of_sin_a4 * cos_a5 + rate_of_cos_a5 * sin_a4
+        shared_sum_3 = rate_of_cos_a4 * speed_a5 + rate_of_r13_at_a5 * speed_a6
+        rate_of_sin_a5 = speed_a5 * cos_a5
+        rate_of_sin_a5_times_speed_a6 = rate_of_sin_a5 * speed_a6
+        rate_of_r33_at_a5 = rate_of_cos_a5 * cos_a4 + rate_of_cos_a4 * cos_a5
+        shared_sum_4 = rate_of_r33_at_a5 * speed_a6 - rate_of_sin_a4 * speed_a5
+        rate_of_sin_a6 = speed_a6 * cos_a6
+        rate_of_r21_at_a6 = rate_of_sin_a6 * cos_a5 + rate_of_cos_a5 * sin_a6
+        rate_of_cos_a6 = -speed_a6 * sin_a6
+        rate_of_r22_at_a6 = rate_of_cos_a6 * cos_a5 + rate_of_cos_a5 * cos_a6
+        rate_of_y = (
+            speed_a2 + k.flange_x * rate_of_r21_at_a6 + k.flange_y * rate_of_r22_at_a6 - k.flange_z * rate_of_sin_a5
+        )
+        rate_of_y_minus_speed_a2 = rate_of_y - speed_a2
+        rate_of_r32_at_a5 = rate_of_sin_a5 * cos_a4 + rate_of_cos_a4 * sin_a5
+        rate_of_r31_at_a6 = (
+            r32_at_a5 * rate_of_sin_a6 + rate_of_r32_at_a5 * sin_a6 - rate_of_sin_a4 * cos_a6 - rate_of_cos_a6 * sin_a4
+        )
+        rate_of_r32_at_a6 = (
+            rate_of_r32_at_a5 * cos_a6 + r32_at_a5 * rate_of_cos_a6 + rate_of_sin_a4 * sin_a6 + rate_of_sin_a6 * sin_a4
+        )
+        rate_of_z = (
+            speed_a3 + k.flange_x * rate_of_r31_at_a6 + k.flange_y * rate_of_r32_at_a6 + k.flange_z * rate_of_r33_at_a5
+        )
+        rate_of_z_minus_speed_a3 = rate_of_z - speed_a3
+        rate_of_r12_at_a5 = rate_of_sin_a4 * sin_a5 + rate_of_sin_a5 * sin_a4
+        rate_of_r11_at_a6 = (
+            rate_of_cos_a6 * cos_a4 + rate_of_cos_a4 * cos_a6 + r12_at_a5 * rate_of_sin_a6 + rate_of_r12_at_a5 * sin_a6
+        )
+        rate_of_r12_at_a6 = (
+            rate_of_r12_at_a5 * cos_a6 + r12_at_a5 * rate_of_cos_a6 - rate_of_sin_a6 * cos_a4 - rate_of_cos_a4 * sin_a6
+        )
+        rate_of_x = (
+            speed_a1 + k.flange_x * rate_of_r11_at_a6 + k.flange_y * rate_of_r12_at_a6 + k.flange_z * rate_of_r13_at_a5
+        )
+        rate_of_x_minus_speed_a1 = rate_of_x - speed_a1
+        return (
+            rate_of_y_minus_speed_a2 * shared_sum
+            + rate_of_z_minus_speed_a3 * speed_a4_minus_sin_a5_times_speed_a6
+            - rate_of_sin_a5_times_speed_a6 * z_minus_a3
+            - shared_sum_4 * y_minus_a2,
+            shared_sum_4 * x_minus_a1
+            - rate_of_x_minus_speed_a1 * shared_sum
+            - rate_of_z_minus_speed_a3 * shared_sum_2
+            - shared_sum_3 * z_minus_a3,
+            rate_of_sin_a5_times_speed_a6 * x_minus_a1
+            + rate_of_y_minus_speed_a2 * shared_sum_2
+            + shared_sum_3 * y_minus_a2
+            - rate_of_x_minus_speed_a1 * speed_a4_minus_sin_a5_times_speed_a6,
+            shared_sum_3,
+            -rate_of_sin_a5_times_speed_a6,
+            shared_sum_4,
+        ), status

@@ -1112,3 +1112,230 @@ class ArrayPrograms(Programs):
             (0.0, -cos_q1, -cos_q1, r21_at_q23, r22_at_q4, r21_at_q5),
             (1.0, 0.0, 0.0, sin_q23, r32_at_q4, r31_at_q5),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                speed_a1,
+                speed_a2,
+                speed_a3,
+                speed_a4,
+                speed_a5,
+                speed_a6,
+            ),
+            Status.BAD_INPUT,
+        )
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_q1 = sin(q1)
+        cos_q1 = cos(q1)
+        rate_of_sin_q1 = speed_a1 * cos_q1
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        sin_q23 = sin(q2_plus_q3)
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_cos_q23 = -speed_a2_plus_speed_a3 * sin_q23
+        rate_of_r21_at_q23 = rate_of_sin_q1 * cos_q23 + rate_of_cos_q23 * sin_q1
+        rate_of_cos_q1 = -speed_a1 * sin_q1
+        rate_of_sin_q23 = speed_a2_plus_speed_a3 * cos_q23
+        rate_of_y_at_q2 = k.a1 * rate_of_sin_q1
+        sin_q2 = sin(q2)
+        cos_q2 = cos(q2)
+        rate_of_sin_q2 = speed_a2 * cos_q2
+        rate_of_r23_at_q2 = -rate_of_sin_q1 * sin_q2 - rate_of_sin_q2 * sin_q1
+        rate_of_y_at_q3 = rate_of_y_at_q2 + k.a2 * rate_of_r23_at_q2
+        rate_of_r23_at_q23 = -rate_of_sin_q1 * sin_q23 - rate_of_sin_q23 * sin_q1
+        rate_of_y_at_q4 = rate_of_y_at_q3 + k.a3 * rate_of_r23_at_q23 - k.d3 * rate_of_cos_q1
+        rate_of_y_at_q5 = rate_of_y_at_q4 + k.d4 * rate_of_r21_at_q23
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        q4 = DEGREE * (axis_a4 - k.offset_a4)
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        q5 = DEGREE * (axis_a5 - k.offset_a5)
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        rate_of_sin_q4 = speed_a4 * cos_q4
+        rate_of_cos_q4 = -speed_a4 * sin_q4
+        rate_of_r23_at_q4 = (
+            rate_of_r23_at_q23 * cos_q4
+            + r23_at_q23 * rate_of_cos_q4
+            - rate_of_sin_q4 * cos_q1
+            - rate_of_cos_q1 * sin_q4
+        )
+        rate_of_sin_q5 = speed_a5 * cos_q5
+        rate_of_cos_q5 = -speed_a5 * sin_q5
+        rate_of_r21_at_q5 = (
+            rate_of_r21_at_q23 * cos_q5
+            + r21_at_q23 * rate_of_cos_q5
+            - r23_at_q4 * rate_of_sin_q5
+            - rate_of_r23_at_q4 * sin_q5
+        )
+        rate_of_y = rate_of_y_at_q5 + k.d6 * rate_of_r21_at_q5
+        rate_of_cos_q2 = -speed_a2 * sin_q2
+        rate_of_z_at_q3 = k.a2 * rate_of_cos_q2
+        rate_of_z_at_q4 = rate_of_z_at_q3 + k.a3 * rate_of_cos_q23
+        rate_of_z_at_q5 = rate_of_z_at_q4 + k.d4 * rate_of_sin_q23
+        r33_at_q4 = cos_q23 * cos_q4
+        rate_of_r33_at_q4 = rate_of_cos_q4 * cos_q23 + rate_of_cos_q23 * cos_q4
+        rate_of_r31_at_q5 = (
+            rate_of_sin_q23 * cos_q5
+            + rate_of_cos_q5 * sin_q23
+            - r33_at_q4 * rate_of_sin_q5
+            - rate_of_r33_at_q4 * sin_q5
+        )
+        rate_of_z = rate_of_z_at_q5 + k.d6 * rate_of_r31_at_q5
+        rate_of_r11_at_q23 = rate_of_cos_q23 * cos_q1 + rate_of_cos_q1 * cos_q23
+        rate_of_x_at_q2 = k.a1 * rate_of_cos_q1
+        rate_of_r13_at_q2 = -rate_of_sin_q2 * cos_q1 - rate_of_cos_q1 * sin_q2
+        rate_of_x_at_q3 = rate_of_x_at_q2 + k.a2 * rate_of_r13_at_q2
+        rate_of_r13_at_q23 = -rate_of_sin_q23 * cos_q1 - rate_of_cos_q1 * sin_q23
+        rate_of_x_at_q4 = rate_of_x_at_q3 + k.a3 * rate_of_r13_at_q23 + k.d3 * rate_of_sin_q1
+        rate_of_x_at_q5 = rate_of_x_at_q4 + k.d4 * rate_of_r11_at_q23
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = -cos_q1 * sin_q23
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        rate_of_r13_at_q4 = (
+            rate_of_r13_at_q23 * cos_q4
+            + r13_at_q23 * rate_of_cos_q4
+            + rate_of_sin_q1 * sin_q4
+            + rate_of_sin_q4 * sin_q1
+        )
+        rate_of_r11_at_q5 = (
+            rate_of_r11_at_q23 * cos_q5
+            + r11_at_q23 * rate_of_cos_q5
+            - r13_at_q4 * rate_of_sin_q5
+            - rate_of_r13_at_q4 * sin_q5
+        )
+        rate_of_x = rate_of_x_at_q5 + k.d6 * rate_of_r11_at_q5
+        r31_at_q5 = cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        r32_at_q4 = cos_q23 * sin_q4
+        shared_sum_2 = r31_at_q5 * speed_a6 + r32_at_q4 * speed_a5
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        shared_sum_3 = r21_at_q5 * speed_a6 + r22_at_q4 * speed_a5
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        shared_sum_4 = r11_at_q5 * speed_a6 + r12_at_q4 * speed_a5
+        rate_of_r22_at_q4 = (
+            rate_of_cos_q4 * cos_q1
+            + rate_of_cos_q1 * cos_q4
+            + r23_at_q23 * rate_of_sin_q4
+            + rate_of_r23_at_q23 * sin_q4
+        )
+        shared_sum_5 = rate_of_r21_at_q5 * speed_a6 + rate_of_r22_at_q4 * speed_a5
+        rate_of_r32_at_q4 = rate_of_sin_q4 * cos_q23 + rate_of_cos_q23 * sin_q4
+        shared_sum_6 = rate_of_r31_at_q5 * speed_a6 + rate_of_r32_at_q4 * speed_a5
+        rate_of_r12_at_q4 = (
+            r13_at_q23 * rate_of_sin_q4
+            + rate_of_r13_at_q23 * sin_q4
+            - rate_of_sin_q1 * cos_q4
+            - rate_of_cos_q4 * sin_q1
+        )
+        shared_sum_7 = rate_of_r11_at_q5 * speed_a6 + rate_of_r12_at_q4 * speed_a5
+        speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3 * speed_a3
+        shared_sum_8 = shared_sum_3 + r21_at_q23 * speed_a4 - speed_a2_plus_speed_a3 * cos_q1
+        shared_sum_9 = shared_sum_2 + speed_a1 + speed_a4 * sin_q23
+        shared_sum_10 = shared_sum_4 + r11_at_q23 * speed_a4 + speed_a2_plus_speed_a3 * sin_q1
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 + k.d4 * sin_q23
+        z = z_at_q5 + k.d6 * r31_at_q5
+        z_minus_z_at_q4 = z - z_at_q4
+        y_at_q2 = k.a1 * sin_q1
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23 - k.d3 * cos_q1
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        y = y_at_q5 + k.d6 * r21_at_q5
+        y_minus_y_at_q4 = y - y_at_q4
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        shared_sum = (k.d1 - z) * speed_a2 + (z_at_q3 - z) * speed_a3
+        shared_sum_11 = (
+            rate_of_cos_q1 * shared_sum
+            + shared_sum_5 * z_minus_z_at_q5
+            + (
+                rate_of_r21_at_q23 * z_minus_z_at_q4
+                + rate_of_y_at_q4 * sin_q23
+                - r21_at_q23 * rate_of_z_at_q4
+                - rate_of_sin_q23 * y_minus_y_at_q4
+            )
+            * speed_a4
+            - shared_sum_6 * y_minus_y_at_q5
+        )
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        x = x_at_q5 + k.d6 * r11_at_q5
+        x_minus_x_at_q4 = x - x_at_q4
+        x_minus_x_at_q5 = x - x_at_q5
+        shared_sum_12 = (
+            rate_of_sin_q1 * shared_sum
+            + shared_sum_6 * x_minus_x_at_q5
+            + (
+                r11_at_q23 * rate_of_z_at_q4
+                + rate_of_sin_q23 * x_minus_x_at_q4
+                - rate_of_r11_at_q23 * z_minus_z_at_q4
+                - rate_of_x_at_q4 * sin_q23
+            )
+            * speed_a4
+            - shared_sum_7 * z_minus_z_at_q5
+        )
+        shared_sum_14 = (
+            (rate_of_x_at_q2 * speed_a2 + rate_of_x_at_q3 * speed_a3) * cos_q1
+            + shared_sum_5 * x_minus_x_at_q5
+            + (rate_of_y_at_q2 * speed_a2 + rate_of_y_at_q3 * speed_a3) * sin_q1
+            - shared_sum_7 * y_minus_y_at_q5
+        )
+        shared_sum_13 = (
+            rate_of_cos_q1 * ((x_at_q2 - x) * speed_a2 + (x_at_q3 - x) * speed_a3)
+            + (
+                r11_at_q23 * rate_of_y_at_q4
+                + rate_of_r21_at_q23 * x_minus_x_at_q4
+                - r21_at_q23 * rate_of_x_at_q4
+                - rate_of_r11_at_q23 * y_minus_y_at_q4
+            )
+            * speed_a4
+            - rate_of_sin_q1 * (speed_a2 * (y - y_at_q2) + speed_a3 * (y - y_at_q3))
+        )
+        return (
+            shared_sum_11
+            + speed_a3_times_rate_of_z_at_q3 * cos_q1
+            + rate_of_y_at_q5 * shared_sum_2
+            + rate_of_z * shared_sum_8
+            - rate_of_y * shared_sum_9
+            - rate_of_z_at_q5 * shared_sum_3,
+            shared_sum_12
+            + rate_of_x * shared_sum_9
+            + rate_of_z_at_q5 * shared_sum_4
+            + speed_a3_times_rate_of_z_at_q3 * sin_q1
+            - rate_of_x_at_q5 * shared_sum_2
+            - rate_of_z * shared_sum_10,
+            rate_of_x_at_q5 * shared_sum_3
+            + rate_of_y * shared_sum_10
+            - shared_sum_13
+            - shared_sum_14
+            - rate_of_x * shared_sum_8
+            - rate_of_y_at_q5 * shared_sum_4,
+            shared_sum_7 + rate_of_r11_at_q23 * speed_a4 + rate_of_sin_q1 * speed_a2_plus_speed_a3,
+            shared_sum_5 + rate_of_r21_at_q23 * speed_a4 - rate_of_cos_q1 * speed_a2_plus_speed_a3,
+            shared_sum_6 + rate_of_sin_q23 * speed_a4,
+        ), status

@@ -301,3 +301,122 @@ class ArrayPrograms(Programs):
             (-slope_1_by_a1_by_determinant * slope_2_by_y, slope_1_by_y * slope_2_by_a2_by_determinant),
             (slope_1_by_a1_by_determinant * slope_2_by_x, -slope_1_by_x * slope_2_by_a2_by_determinant),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, speed_a1, speed_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        # rod 1: centre about which it swings
+        pivot_1_x = -k.displacement_minus_tcp_displacement - k.inner_arm * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        # rod 2: centre about which it swings
+        pivot_2_x = k.displacement_minus_tcp_displacement + k.inner_arm * cos_a2
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = -k.inner_arm * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = -k.inner_arm * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.twice_outer_arm - between_centres)
+            * (between_centres + k.twice_outer_arm)
+            * between_centres
+            * between_centres
+            / normal_divisor
+        )
+        foot_x = 0.5 * centre_1_to_2_x  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square / normal_divisor) * k.assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x + k.twice_inner_arm * cos_a1 - k.sum_in_slope_1_by_x
+        foot_y = 0.5 * centre_1_to_2_y
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_1_by_y = twice_y + k.twice_inner_arm * sin_a1
+        slope_2_by_x = k.sum_in_slope_1_by_x + twice_x - k.twice_inner_arm * cos_a2
+        slope_2_by_y = twice_y + k.twice_inner_arm * sin_a2
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
+        x_minus_pivot_1_x = x - pivot_1_x
+        y_minus_pivot_1_y = y - pivot_1_y
+        slope_1_by_a1 = k.twice_inner_arm * (y_minus_pivot_1_y * cos_a1 - x_minus_pivot_1_x * sin_a1)
+        x_minus_pivot_2_x = x - pivot_2_x
+        y_minus_pivot_2_y = y - pivot_2_y
+        slope_2_by_a2 = k.twice_inner_arm * (y_minus_pivot_2_y * cos_a2 + x_minus_pivot_2_x * sin_a2)
+        determinant_divisor = select(absolute(determinant) > k.machine_scale_squared_times_free_angle, determinant, 1.0)
+        one_by_determinant = 1.0 / determinant_divisor
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            slope_2_by_x * speed_a1_times_slope_1_by_a1 - slope_1_by_x * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_slope_1_by_y = twice_velocity_y + rate_of_sin_a1 * k.twice_inner_arm
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_2_by_y = twice_velocity_y + rate_of_sin_a2 * k.twice_inner_arm
+        velocity_x = one_by_determinant * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_slope_1_by_a1 = (
+            (k.twice_inner_arm * y_minus_pivot_1_y - k.inner_arm_squared_times_2 * sin_a1) * rate_of_cos_a1
+            + rate_of_sin_a1 * (k.inner_arm_squared_times_2 * cos_a1 - k.twice_inner_arm * x_minus_pivot_1_x)
+            + k.twice_inner_arm * (velocity_y * cos_a1 - velocity_x * sin_a1)
+        )
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x + rate_of_cos_a1 * k.twice_inner_arm
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a2 * k.twice_inner_arm
+        rate_of_determinant = (
+            rate_of_slope_1_by_x * slope_2_by_y
+            + rate_of_slope_2_by_y * slope_1_by_x
+            - rate_of_slope_1_by_y * slope_2_by_x
+            - rate_of_slope_2_by_x * slope_1_by_y
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.machine_scale_squared_times_free_angle, rate_of_determinant, 0.0
+        )
+        rate_of_slope_2_by_a2 = (
+            (k.twice_inner_arm * y_minus_pivot_2_y - k.inner_arm_squared_times_2 * sin_a2) * rate_of_cos_a2
+            + rate_of_sin_a2 * (k.inner_arm_squared_times_2 * cos_a2 + k.twice_inner_arm * x_minus_pivot_2_x)
+            + k.twice_inner_arm * (velocity_y * cos_a2 + velocity_x * sin_a2)
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.machine_scale_squared_times_free_angle)
+            & (height_square >= -k.outer_arm_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            one_by_determinant
+            * (
+                (-rate_of_slope_1_by_a1 * slope_2_by_y - rate_of_slope_2_by_y * slope_1_by_a1) * speed_a1
+                + (rate_of_slope_1_by_y * slope_2_by_a2 + rate_of_slope_2_by_a2 * slope_1_by_y) * speed_a2
+            )
+            - one_by_determinant * rate_of_determinant_divisor * velocity_x,
+            one_by_determinant
+            * (
+                (rate_of_slope_1_by_a1 * slope_2_by_x + rate_of_slope_2_by_x * slope_1_by_a1) * speed_a1
+                + (-rate_of_slope_1_by_x * slope_2_by_a2 - rate_of_slope_2_by_a2 * slope_1_by_x) * speed_a2
+            )
+            - one_by_determinant * rate_of_determinant_divisor * velocity_y,
+        ), status

@@ -92,6 +92,15 @@ class ArrayPrograms(OrientationPrograms):
         require(status, reasonable(axis_c), Status.BAD_INPUT)
         return ((0.0,), (0.0,), (0.0,), (0.0,), (0.0,), (1.0,)), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        (axis_c,) = axes
+        (speed_c,) = speeds
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, speed_c), Status.BAD_INPUT)
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

@@ -105,6 +105,26 @@ class ArrayPrograms(OrientationPrograms):
             (1.0,),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        (axis_c,) = axes
+        (speed_c,) = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, speed_c), Status.BAD_INPUT)
+        c = DEGREE * (axis_c - k.offset_c)
+        rate_of_sin_c = cos(c) * speed_c
+        rate_of_cos_c = -sin(c) * speed_c
+        return (
+            (-rate_of_cos_c * k.tool_y - rate_of_sin_c * k.tool_x) * speed_c,
+            (rate_of_cos_c * k.tool_x - rate_of_sin_c * k.tool_y) * speed_c,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

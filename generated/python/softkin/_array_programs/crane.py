@@ -185,3 +185,47 @@ class ArrayPrograms(Programs):
             (sin_phi * sin_theta, r_times_sin_phi * cos_theta, cos_phi_times_r * sin_theta),
             (cos_phi, 0.0, -r_times_sin_phi),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_r, axis_theta, axis_phi = axes
+        speed_r, speed_theta, speed_phi = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_phi, axis_r, axis_theta, speed_phi, speed_r, speed_theta), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        axis_phi_minus_offset_phi = axis_phi - k.offset_phi
+        theta = DEGREE * (axis_theta - k.offset_theta)
+        cos_theta = cos(theta)
+        sin_theta = sin(theta)
+        rate_of_cos_theta = -speed_theta * sin_theta
+        phi = DEGREE * axis_phi_minus_offset_phi
+        cos_phi = cos(phi)
+        rate_of_sin_phi = speed_phi * cos_phi
+        rate_of_sin_theta = speed_theta * cos_theta
+        sin_phi = sin(phi)
+        rate_of_cos_phi = -speed_phi * sin_phi
+        shared_sum = r * rate_of_sin_phi + speed_r * sin_phi
+        sin_phi_times_speed_theta = speed_theta * sin_phi
+        r_times_speed_theta = r * speed_theta
+        speed_phi_times_rate_of_cos_phi = rate_of_cos_phi * speed_phi
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        # Phi where the machine has no pose
+        require(
+            status,
+            (axis_phi_minus_offset_phi >= -1e-9) & (axis_phi_minus_offset_phi <= 180.000000181),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            r * (speed_phi_times_rate_of_cos_phi * cos_theta - rate_of_sin_theta * sin_phi_times_speed_theta)
+            + rate_of_cos_theta * shared_sum
+            + rate_of_sin_phi * (speed_r * cos_theta - r_times_speed_theta * sin_theta)
+            + speed_r * (rate_of_sin_phi * cos_theta - sin_phi_times_speed_theta * sin_theta),
+            r * (rate_of_cos_theta * sin_phi_times_speed_theta + speed_phi_times_rate_of_cos_phi * sin_theta)
+            + rate_of_sin_phi * (r_times_speed_theta * cos_theta + speed_r * sin_theta)
+            + rate_of_sin_theta * shared_sum
+            + speed_r * (cos_theta * sin_phi_times_speed_theta + rate_of_sin_phi * sin_theta),
+            rate_of_cos_phi * speed_r - shared_sum * speed_phi,
+        ), status

@@ -506,6 +506,289 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, speed_a1, speed_a2, speed_a3, speed_a4),
+            Status.BAD_INPUT,
+        )
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_y = k.sum_in_pivot_2_y + k.arm_length_times_root_of_3_times_half * cos_a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        cos_a3 = cos(a3)
+        pivot_3_y = -k.sum_in_pivot_2_y - k.arm_length_times_root_of_3_times_half * cos_a3
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        pivot_1_z = -k.arm_length * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_z = -k.arm_length * sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        sin_a3 = sin(a3)
+        pivot_3_z = -k.arm_length * sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        normal_x = centre_1_to_3_z * pivot_2_y - centre_1_to_2_z * pivot_3_y  # normal to the plane of the centres
+        cos_a1 = cos(a1)
+        pivot_1_x = k.base_radius_minus_plate_radius + k.arm_length * cos_a1  # rod 1: centre about which it swings
+        # rod 2: centre about which it swings
+        pivot_2_x = k.half_plate_radius_minus_half_base_radius - k.half_arm_length * cos_a2
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        # rod 3: centre about which it swings
+        pivot_3_x = k.half_plate_radius_minus_half_base_radius - k.half_arm_length * cos_a3
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * pivot_3_y - centre_1_to_3_x * pivot_2_y
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_z * centre_1_to_2_z + pivot_2_y * pivot_2_y
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_z * centre_1_to_3_z + pivot_3_y * pivot_3_y
+        )
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        one_by_normal_square = 1.0 / normal_divisor
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (normal_z * pivot_3_y - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - normal_z * pivot_2_y) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - normal_x * pivot_3_y) * projection_2
+            + (normal_x * pivot_2_y - centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = k.rod_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        twice_x = 2.0 * x
+        slope_1_by_x = twice_x - k.sum_in_slope_1_by_x - k.twice_arm_length * cos_a1
+        y = foot_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * y
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        twice_z = 2.0 * z
+        slope_1_by_z = twice_z + k.twice_arm_length * sin_a1
+        arm_length_times_cos_a2 = k.arm_length * cos_a2
+        product_in_slope_2_by_y = (k.plate_radius - arm_length_times_cos_a2 - k.base_radius) * k.root_of_3
+        slope_2_by_y = product_in_slope_2_by_y + slope_1_by_y
+        slope_2_by_z = twice_z + k.twice_arm_length * sin_a2
+        arm_length_times_cos_a3 = k.arm_length * cos_a3
+        product_in_slope_3_by_y = (k.plate_radius - arm_length_times_cos_a3 - k.base_radius) * k.root_of_3
+        slope_3_by_y = slope_1_by_y - product_in_slope_3_by_y
+        slope_3_by_z = twice_z + k.twice_arm_length * sin_a3
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        sum_in_slope_2_by_x = k.base_radius_minus_plate_radius + twice_x
+        slope_2_by_x = arm_length_times_cos_a2 + sum_in_slope_2_by_x
+        slope_3_by_x = arm_length_times_cos_a3 + sum_in_slope_2_by_x
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        determinant_divisor = select(absolute(determinant) > k.product_in_determinant_divisor, determinant, 1.0)
+        one_by_determinant_divisor = 1.0 / determinant_divisor
+        cos_a3_times_twice_arm_length = k.twice_arm_length * cos_a3
+        z_minus_pivot_3_z = z - pivot_3_z
+        sum_in_slope_3_by_a3 = k.arm_length * (pivot_3_x - x) + k.arm_length_times_root_of_3 * (
+            0.5 * product_in_slope_3_by_y - y
+        )
+        slope_3_by_a3 = z_minus_pivot_3_z * cos_a3_times_twice_arm_length + sum_in_slope_3_by_a3 * sin_a3
+        speed_a3_times_slope_3_by_a3 = slope_3_by_a3 * speed_a3
+        cos_a2_times_twice_arm_length = k.twice_arm_length * cos_a2
+        z_minus_pivot_2_z = z - pivot_2_z
+        sum_in_slope_2_by_a2 = k.arm_length * (pivot_2_x - x) + k.arm_length_times_root_of_3 * (
+            0.5 * product_in_slope_2_by_y + y
+        )
+        slope_2_by_a2 = z_minus_pivot_2_z * cos_a2_times_twice_arm_length + sum_in_slope_2_by_a2 * sin_a2
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        x_minus_pivot_1_x = x - pivot_1_x
+        z_minus_pivot_1_z = z - pivot_1_z
+        slope_1_by_a1 = k.twice_arm_length * (z_minus_pivot_1_z * cos_a1 + x_minus_pivot_1_x * sin_a1)
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        sum_in_velocity_x = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        sum_in_velocity_x_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x - rate_of_cos_a1 * k.twice_arm_length
+        rate_of_cos_a3 = -speed_a3 * sin_a3
+        rate_of_slope_3_by_y = rate_of_slope_1_by_y + k.arm_length_times_root_of_3 * rate_of_cos_a3
+        twice_velocity_z = 2.0 * velocity_z
+        rate_of_sin_a3 = speed_a3 * cos_a3
+        rate_of_slope_3_by_z = twice_velocity_z + rate_of_sin_a3 * k.twice_arm_length
+        rate_of_slope_3_by_x = twice_velocity_x + k.arm_length * rate_of_cos_a3
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        rate_of_slope_1_by_z = twice_velocity_z + rate_of_sin_a1 * k.twice_arm_length
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_2_by_y = rate_of_slope_1_by_y - k.arm_length_times_root_of_3 * rate_of_cos_a2
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_2_by_z = twice_velocity_z + rate_of_sin_a2 * k.twice_arm_length
+        rate_of_slope_2_by_x = twice_velocity_x + k.arm_length * rate_of_cos_a2
+        sum_in_rate_of_determinant = (
+            rate_of_slope_1_by_x * sum_in_determinant
+            + rate_of_slope_1_by_y * sum_in_determinant_2
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_x * sum_in_velocity_x
+            - rate_of_slope_2_by_y * sum_in_velocity_y
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+        )
+        rate_of_determinant = (
+            sum_in_rate_of_determinant
+            - rate_of_slope_3_by_x * sum_in_velocity_x_2
+            - rate_of_slope_3_by_y * sum_in_velocity_y_2
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.product_in_determinant_divisor, rate_of_determinant, 0.0
+        )
+        shared_product_5 = one_by_determinant_divisor * (
+            slope_2_by_y * speed_a3_times_slope_3_by_a3 - slope_3_by_y * speed_a2_times_slope_2_by_a2
+        )
+        shared_product_6 = one_by_determinant_divisor * (
+            slope_2_by_z * speed_a3_times_slope_3_by_a3 - slope_3_by_z * speed_a2_times_slope_2_by_a2
+        )
+        product_in_rate_of_slope_2_by_a2_2 = k.arm_length_times_root_of_3 * velocity_y
+        arm_length_times_velocity_x = k.arm_length * velocity_x
+        rate_of_slope_3_by_a3 = (
+            velocity_z * cos_a3_times_twice_arm_length
+            + (k.twice_arm_length * z_minus_pivot_3_z - k.product_in_rate_of_slope_2_by_a2 * sin_a3) * rate_of_cos_a3
+            + (sum_in_slope_3_by_a3 + k.arm_length_squared_times_2 * cos_a3) * rate_of_sin_a3
+            + (-arm_length_times_velocity_x - product_in_rate_of_slope_2_by_a2_2) * sin_a3
+        )
+        speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3 * speed_a3
+        rate_of_slope_2_by_a2 = (
+            velocity_z * cos_a2_times_twice_arm_length
+            + (k.twice_arm_length * z_minus_pivot_2_z - k.product_in_rate_of_slope_2_by_a2 * sin_a2) * rate_of_cos_a2
+            + (sum_in_slope_2_by_a2 + k.arm_length_squared_times_2 * cos_a2) * rate_of_sin_a2
+            + (product_in_rate_of_slope_2_by_a2_2 - arm_length_times_velocity_x) * sin_a2
+        )
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        rate_of_slope_1_by_a1 = (
+            (k.twice_arm_length * z_minus_pivot_1_z - k.arm_length_squared_times_2 * sin_a1) * rate_of_cos_a1
+            + (k.arm_length_squared_times_2 * cos_a1 + k.twice_arm_length * x_minus_pivot_1_x) * rate_of_sin_a1
+            + k.twice_arm_length * (velocity_z * cos_a1 + velocity_x * sin_a1)
+        )
+        speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1 * speed_a1
+        shared_product_10 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        shared_product_11 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        shared_product_12 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        shared_product = one_by_determinant_divisor * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_2 = one_by_determinant_divisor * (
+            slope_1_by_z * speed_a2_times_slope_2_by_a2 - slope_2_by_z * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_3 = (
+            slope_3_by_y * speed_a1_times_slope_1_by_a1 - slope_1_by_y * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_product_4 = one_by_determinant_divisor * (
+            slope_1_by_z * speed_a3_times_slope_3_by_a3 - slope_3_by_z * speed_a1_times_slope_1_by_a1
+        )
+        shared_sum = (
+            rate_of_slope_1_by_z * shared_product_5
+            + rate_of_slope_2_by_y * shared_product_4
+            + rate_of_slope_2_by_z * shared_product_3
+            + rate_of_slope_3_by_z * shared_product
+            - rate_of_slope_3_by_y * shared_product_2
+        )
+        shared_product_7 = (
+            slope_2_by_x * speed_a1_times_slope_1_by_a1 - slope_1_by_x * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant_divisor
+        shared_product_8 = one_by_determinant_divisor * (
+            slope_1_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_9 = one_by_determinant_divisor * (
+            slope_2_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a2_times_slope_2_by_a2
+        )
+        shared_sum_2 = (
+            rate_of_slope_2_by_z * shared_product_8
+            + rate_of_slope_3_by_x * shared_product_2
+            + rate_of_slope_3_by_z * shared_product_7
+            - rate_of_slope_1_by_z * shared_product_9
+            - rate_of_slope_2_by_x * shared_product_4
+        )
+        shared_sum_3 = (
+            rate_of_slope_2_by_x * shared_product_3
+            + rate_of_slope_2_by_y * shared_product_8
+            + rate_of_slope_3_by_x * shared_product
+            + rate_of_slope_3_by_y * shared_product_7
+            - rate_of_slope_1_by_y * shared_product_9
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.product_in_determinant_divisor)
+            & (height_square >= -k.rod_length_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            shared_product_10
+            + shared_sum
+            - rate_of_slope_1_by_y * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_x,
+            shared_product_11
+            + shared_sum_2
+            + rate_of_slope_1_by_x * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_y,
+            shared_product_12
+            - shared_sum_3
+            - rate_of_slope_1_by_x * shared_product_5
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_z,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

@@ -520,3 +520,305 @@ class ArrayPrograms(Programs):
                 (slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y) * shared_product_3,
             ),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, speed_a1, speed_a2, speed_a3), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        pivot_1_y = k.sum_in_pivot_1_y + k.inner_arm_1_times_sin_azimuth_1 * cos_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_y = k.sum_in_pivot_2_y + k.inner_arm_2_times_sin_azimuth_2 * cos_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        sin_a1 = sin(a1)
+        pivot_1_z = -k.inner_arm_1 * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_z = -k.inner_arm_2 * sin_a2
+        centre_1_to_2_z = pivot_2_z - pivot_1_z
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        cos_a3 = cos(a3)
+        pivot_3_y = k.sum_in_pivot_3_y + k.inner_arm_3_times_sin_azimuth_3 * cos_a3
+        centre_1_to_3_y = pivot_3_y - pivot_1_y
+        sin_a3 = sin(a3)
+        pivot_3_z = -k.inner_arm_3 * sin_a3
+        centre_1_to_3_z = pivot_3_z - pivot_1_z
+        # normal to the plane of the centres
+        normal_x = centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * centre_1_to_3_y
+        # rod 1: centre about which it swings
+        pivot_1_x = k.sum_in_pivot_1_x + cos_a1 * k.cos_azimuth_1_times_inner_arm_1
+        # rod 2: centre about which it swings
+        pivot_2_x = k.sum_in_pivot_2_x + cos_a2 * k.cos_azimuth_2_times_inner_arm_2
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        # rod 3: centre about which it swings
+        pivot_3_x = k.sum_in_pivot_3_x + cos_a3 * k.cos_azimuth_3_times_inner_arm_3
+        centre_1_to_3_x = pivot_3_x - pivot_1_x  # vector from centre 1 to centre 3
+        normal_y = centre_1_to_2_z * centre_1_to_3_x - centre_1_to_2_x * centre_1_to_3_z
+        normal_z = centre_1_to_2_x * centre_1_to_3_y - centre_1_to_2_y * centre_1_to_3_x
+        # squared length of the normal
+        normal_square = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = k.sum_in_projection_2 + 0.5 * (
+            centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y + centre_1_to_2_z * centre_1_to_2_z
+        )
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = k.sum_in_projection_3 + 0.5 * (
+            centre_1_to_3_x * centre_1_to_3_x + centre_1_to_3_y * centre_1_to_3_y + centre_1_to_3_z * centre_1_to_3_z
+        )
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        one_by_normal_square = 1.0 / normal_divisor
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (centre_1_to_3_y * normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - centre_1_to_2_y * normal_z) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - centre_1_to_3_x * normal_z) * projection_2
+            + (centre_1_to_2_x * normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (centre_1_to_3_x * normal_y - centre_1_to_3_y * normal_x) * projection_2
+            + (centre_1_to_2_y * normal_x - centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = k.outer_arm_1_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + pivot_1_x + height_by_normal * normal_x
+        sum_in_slope_1_by_y = k.base_radius_1 + k.inner_arm_1 * cos_a1
+        slope_1_by_x = 2.0 * (k.cos_azimuth_1_times_tcp_radius_1 + x) - sum_in_slope_1_by_y * k.twice_cos_azimuth_1
+        y = foot_y + pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (k.sin_azimuth_1_times_tcp_radius_1 + y) - sum_in_slope_1_by_y * k.twice_sin_azimuth_1
+        z = foot_z + pivot_1_z + height_by_normal * normal_z
+        twice_z = 2.0 * z
+        slope_1_by_z = twice_z + k.twice_inner_arm_1 * sin_a1
+        sum_in_slope_2_by_x = k.base_radius_2 + k.inner_arm_2 * cos_a2
+        slope_2_by_y = 2.0 * (k.sin_azimuth_2_times_tcp_radius_2 + y) - sum_in_slope_2_by_x * k.twice_sin_azimuth_2
+        slope_2_by_z = twice_z + k.twice_inner_arm_2 * sin_a2
+        sum_in_slope_3_by_y = k.base_radius_3 + k.inner_arm_3 * cos_a3
+        slope_3_by_y = 2.0 * (k.sin_azimuth_3_times_tcp_radius_3 + y) - sum_in_slope_3_by_y * k.twice_sin_azimuth_3
+        slope_3_by_z = twice_z + k.twice_inner_arm_3 * sin_a3
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (k.cos_azimuth_2_times_tcp_radius_2 + x) - sum_in_slope_2_by_x * k.twice_cos_azimuth_2
+        slope_3_by_x = 2.0 * (k.cos_azimuth_3_times_tcp_radius_3 + x) - sum_in_slope_3_by_y * k.twice_cos_azimuth_3
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        determinant_divisor = select(absolute(determinant) > k.product_in_determinant_divisor, determinant, 1.0)
+        one_by_determinant_divisor = 1.0 / determinant_divisor
+        cos_a3_times_twice_inner_arm_3 = k.twice_inner_arm_3 * cos_a3
+        z_minus_pivot_3_z = z - pivot_3_z
+        tcp_radius_3_minus_sum_in_slope_3_by_y = k.tcp_radius_3 - sum_in_slope_3_by_y
+        sum_in_slope_3_by_a3 = (
+            x + tcp_radius_3_minus_sum_in_slope_3_by_y * k.cos_azimuth_3
+        ) * k.cos_azimuth_3_times_inner_arm_3_times_2 + k.inner_arm_3_times_sin_azimuth_3_times_2 * (
+            y + tcp_radius_3_minus_sum_in_slope_3_by_y * k.sin_azimuth_3
+        )
+        slope_3_by_a3 = z_minus_pivot_3_z * cos_a3_times_twice_inner_arm_3 + sum_in_slope_3_by_a3 * sin_a3
+        speed_a3_times_slope_3_by_a3 = slope_3_by_a3 * speed_a3
+        cos_a2_times_twice_inner_arm_2 = k.twice_inner_arm_2 * cos_a2
+        z_minus_pivot_2_z = z - pivot_2_z
+        tcp_radius_2_minus_sum_in_slope_2_by_x = k.tcp_radius_2 - sum_in_slope_2_by_x
+        sum_in_slope_2_by_a2 = (
+            x + tcp_radius_2_minus_sum_in_slope_2_by_x * k.cos_azimuth_2
+        ) * k.cos_azimuth_2_times_inner_arm_2_times_2 + k.inner_arm_2_times_sin_azimuth_2_times_2 * (
+            y + tcp_radius_2_minus_sum_in_slope_2_by_x * k.sin_azimuth_2
+        )
+        slope_2_by_a2 = z_minus_pivot_2_z * cos_a2_times_twice_inner_arm_2 + sum_in_slope_2_by_a2 * sin_a2
+        speed_a2_times_slope_2_by_a2 = slope_2_by_a2 * speed_a2
+        cos_a1_times_twice_inner_arm_1 = k.twice_inner_arm_1 * cos_a1
+        z_minus_pivot_1_z = z - pivot_1_z
+        tcp_radius_1_minus_sum_in_slope_1_by_y = k.tcp_radius_1 - sum_in_slope_1_by_y
+        sum_in_slope_1_by_a1 = (
+            x + tcp_radius_1_minus_sum_in_slope_1_by_y * k.cos_azimuth_1
+        ) * k.cos_azimuth_1_times_inner_arm_1_times_2 + k.inner_arm_1_times_sin_azimuth_1_times_2 * (
+            y + tcp_radius_1_minus_sum_in_slope_1_by_y * k.sin_azimuth_1
+        )
+        slope_1_by_a1 = z_minus_pivot_1_z * cos_a1_times_twice_inner_arm_1 + sum_in_slope_1_by_a1 * sin_a1
+        speed_a1_times_slope_1_by_a1 = slope_1_by_a1 * speed_a1
+        velocity_y = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_slope_1_by_y = twice_velocity_y - k.inner_arm_1_times_sin_azimuth_1_times_2 * rate_of_cos_a1
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        sum_in_velocity_x = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        sum_in_velocity_x_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a2_times_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_1_by_x = twice_velocity_x - rate_of_cos_a1 * k.cos_azimuth_1_times_inner_arm_1_times_2
+        rate_of_cos_a3 = -speed_a3 * sin_a3
+        rate_of_slope_3_by_y = twice_velocity_y - k.inner_arm_3_times_sin_azimuth_3_times_2 * rate_of_cos_a3
+        twice_velocity_z = 2.0 * velocity_z
+        rate_of_sin_a3 = speed_a3 * cos_a3
+        rate_of_slope_3_by_z = twice_velocity_z + rate_of_sin_a3 * k.twice_inner_arm_3
+        rate_of_slope_3_by_x = twice_velocity_x - rate_of_cos_a3 * k.cos_azimuth_3_times_inner_arm_3_times_2
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        rate_of_slope_1_by_z = twice_velocity_z + rate_of_sin_a1 * k.twice_inner_arm_1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_2_by_y = twice_velocity_y - k.inner_arm_2_times_sin_azimuth_2_times_2 * rate_of_cos_a2
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_2_by_z = twice_velocity_z + rate_of_sin_a2 * k.twice_inner_arm_2
+        rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a2 * k.cos_azimuth_2_times_inner_arm_2_times_2
+        sum_in_rate_of_determinant = (
+            rate_of_slope_1_by_x * sum_in_determinant
+            + rate_of_slope_1_by_y * sum_in_determinant_2
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_x * sum_in_velocity_x
+            - rate_of_slope_2_by_y * sum_in_velocity_y
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+        )
+        rate_of_determinant = (
+            sum_in_rate_of_determinant
+            - rate_of_slope_3_by_x * sum_in_velocity_x_2
+            - rate_of_slope_3_by_y * sum_in_velocity_y_2
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.product_in_determinant_divisor, rate_of_determinant, 0.0
+        )
+        shared_product_5 = one_by_determinant_divisor * (
+            slope_2_by_y * speed_a3_times_slope_3_by_a3 - slope_3_by_y * speed_a2_times_slope_2_by_a2
+        )
+        shared_product_6 = one_by_determinant_divisor * (
+            slope_2_by_z * speed_a3_times_slope_3_by_a3 - slope_3_by_z * speed_a2_times_slope_2_by_a2
+        )
+        sum_in_rate_of_slope_3_by_a3 = (
+            (k.twice_inner_arm_3 * z_minus_pivot_3_z - k.product_in_rate_of_slope_3_by_a3 * sin_a3) * rate_of_cos_a3
+            + rate_of_sin_a3 * (sum_in_slope_3_by_a3 + k.inner_arm_3_squared_times_2 * cos_a3)
+            + (
+                velocity_x * k.cos_azimuth_3_times_inner_arm_3_times_2
+                + k.inner_arm_3_times_sin_azimuth_3_times_2 * velocity_y
+            )
+            * sin_a3
+        )
+        rate_of_slope_3_by_a3 = sum_in_rate_of_slope_3_by_a3 + velocity_z * cos_a3_times_twice_inner_arm_3
+        speed_a3_times_rate_of_slope_3_by_a3 = rate_of_slope_3_by_a3 * speed_a3
+        sum_in_rate_of_slope_2_by_a2 = (
+            (k.twice_inner_arm_2 * z_minus_pivot_2_z - k.product_in_rate_of_slope_2_by_a2 * sin_a2) * rate_of_cos_a2
+            + rate_of_sin_a2 * (sum_in_slope_2_by_a2 + k.inner_arm_2_squared_times_2 * cos_a2)
+            + (
+                velocity_x * k.cos_azimuth_2_times_inner_arm_2_times_2
+                + k.inner_arm_2_times_sin_azimuth_2_times_2 * velocity_y
+            )
+            * sin_a2
+        )
+        rate_of_slope_2_by_a2 = sum_in_rate_of_slope_2_by_a2 + velocity_z * cos_a2_times_twice_inner_arm_2
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        sum_in_rate_of_slope_1_by_a1 = (
+            (k.twice_inner_arm_1 * z_minus_pivot_1_z - k.product_in_rate_of_slope_1_by_a1 * sin_a1) * rate_of_cos_a1
+            + rate_of_sin_a1 * (sum_in_slope_1_by_a1 + k.inner_arm_1_squared_times_2 * cos_a1)
+            + (
+                velocity_x * k.cos_azimuth_1_times_inner_arm_1_times_2
+                + k.inner_arm_1_times_sin_azimuth_1_times_2 * velocity_y
+            )
+            * sin_a1
+        )
+        rate_of_slope_1_by_a1 = sum_in_rate_of_slope_1_by_a1 + velocity_z * cos_a1_times_twice_inner_arm_1
+        speed_a1_times_rate_of_slope_1_by_a1 = rate_of_slope_1_by_a1 * speed_a1
+        shared_product_10 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_x
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_x_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant
+        ) * one_by_determinant_divisor
+        shared_product = one_by_determinant_divisor * (
+            slope_1_by_y * speed_a2_times_slope_2_by_a2 - slope_2_by_y * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_2 = one_by_determinant_divisor * (
+            slope_1_by_z * speed_a2_times_slope_2_by_a2 - slope_2_by_z * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_3 = (
+            slope_3_by_y * speed_a1_times_slope_1_by_a1 - slope_1_by_y * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_product_4 = (
+            slope_3_by_z * speed_a1_times_slope_1_by_a1 - slope_1_by_z * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_sum = (
+            rate_of_slope_1_by_z * shared_product_5
+            + rate_of_slope_2_by_z * shared_product_3
+            + rate_of_slope_3_by_z * shared_product
+            - rate_of_slope_2_by_y * shared_product_4
+            - rate_of_slope_3_by_y * shared_product_2
+        )
+        shared_product_11 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_y
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_y_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_2
+        ) * one_by_determinant_divisor
+        shared_product_7 = (
+            slope_2_by_x * speed_a1_times_slope_1_by_a1 - slope_1_by_x * speed_a2_times_slope_2_by_a2
+        ) * one_by_determinant_divisor
+        shared_product_8 = one_by_determinant_divisor * (
+            slope_1_by_x * speed_a3_times_slope_3_by_a3 - slope_3_by_x * speed_a1_times_slope_1_by_a1
+        )
+        shared_product_9 = (
+            slope_3_by_x * speed_a2_times_slope_2_by_a2 - slope_2_by_x * speed_a3_times_slope_3_by_a3
+        ) * one_by_determinant_divisor
+        shared_sum_2 = (
+            rate_of_slope_1_by_z * shared_product_9
+            + rate_of_slope_2_by_x * shared_product_4
+            + rate_of_slope_2_by_z * shared_product_8
+            + rate_of_slope_3_by_x * shared_product_2
+            + rate_of_slope_3_by_z * shared_product_7
+        )
+        shared_product_12 = (
+            speed_a2_times_rate_of_slope_2_by_a2 * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_a3 * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_a1 * sum_in_determinant_3
+        ) * one_by_determinant_divisor
+        shared_sum_3 = (
+            rate_of_slope_1_by_y * shared_product_9
+            + rate_of_slope_2_by_x * shared_product_3
+            + rate_of_slope_2_by_y * shared_product_8
+            + rate_of_slope_3_by_x * shared_product
+            + rate_of_slope_3_by_y * shared_product_7
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.product_in_determinant_divisor)
+            & (height_square >= -k.outer_arm_1_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            shared_product_10
+            + shared_sum
+            - rate_of_slope_1_by_y * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_x,
+            shared_product_11
+            + shared_sum_2
+            + rate_of_slope_1_by_x * shared_product_6
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_y,
+            shared_product_12
+            - shared_sum_3
+            - rate_of_slope_1_by_x * shared_product_5
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_z,
+        ), status

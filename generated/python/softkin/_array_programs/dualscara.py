@@ -347,6 +347,134 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, speed_a1, speed_a2, speed_a3, speed_a4),
+            Status.BAD_INPUT,
+        )
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        pivot_1_x = k.arm_length_1 * cos_a1 - k.half_base_distance  # rod 1: centre about which it swings
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        pivot_2_x = k.half_base_distance + k.arm_length_2 * cos_a2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        sin_a1 = sin(a1)
+        pivot_1_y = k.arm_length_1 * sin_a1
+        sin_a2 = sin(a2)
+        pivot_2_y = k.arm_length_2 * sin_a2
+        centre_1_to_2_y = pivot_2_y - pivot_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.rod_length_1_plus_rod_length_2 - between_centres)
+            * (between_centres + k.rod_length_1_minus_rod_length_2)
+            * (between_centres + k.rod_length_1_plus_rod_length_2)
+            * (between_centres - k.rod_length_1_minus_rod_length_2)
+            * one_by_normal_square
+        )
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_divisor + k.product_in_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + pivot_1_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        slope_2_by_x = k.base_distance + twice_x - k.twice_arm_length_1 * cos_a1
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = foot_y + pivot_1_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        slope_2_by_y = twice_y - k.twice_arm_length_1 * sin_a1
+        slope_3_by_x = twice_x - k.base_distance - k.twice_arm_length_2 * cos_a2
+        slope_3_by_y = twice_y - k.twice_arm_length_2 * sin_a2
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        x_minus_pivot_1_x = x - pivot_1_x
+        y_minus_pivot_1_y = y - pivot_1_y
+        slope_2_by_a1 = (x_minus_pivot_1_x * sin_a1 - y_minus_pivot_1_y * cos_a1) * k.twice_arm_length_1
+        x_minus_pivot_2_x = x - pivot_2_x
+        y_minus_pivot_2_y = y - pivot_2_y
+        slope_3_by_a2 = (x_minus_pivot_2_x * sin_a2 - y_minus_pivot_2_y * cos_a2) * k.twice_arm_length_2
+        determinant_divisor = select(absolute(determinant) > k.machine_scale_squared_times_free_angle, determinant, 1.0)
+        one_by_determinant_divisor = 1.0 / determinant_divisor
+        speed_a2_times_slope_3_by_a2 = slope_3_by_a2 * speed_a2
+        speed_a1_times_slope_2_by_a1 = slope_2_by_a1 * speed_a1
+        velocity_y = (
+            slope_3_by_x * speed_a1_times_slope_2_by_a1 - slope_2_by_x * speed_a2_times_slope_3_by_a2
+        ) * one_by_determinant_divisor
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_slope_2_by_y = twice_velocity_y - rate_of_sin_a1 * k.twice_arm_length_1
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_slope_3_by_y = twice_velocity_y - rate_of_sin_a2 * k.twice_arm_length_2
+        velocity_x = one_by_determinant_divisor * (
+            slope_2_by_y * speed_a2_times_slope_3_by_a2 - slope_3_by_y * speed_a1_times_slope_2_by_a1
+        )
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_slope_2_by_a1 = (
+            (k.arm_length_1_squared_times_2 * cos_a1 + k.twice_arm_length_1 * x_minus_pivot_1_x) * rate_of_sin_a1
+            + (velocity_x * sin_a1 - velocity_y * cos_a1) * k.twice_arm_length_1
+            - (k.arm_length_1_squared_times_2 * sin_a1 + k.twice_arm_length_1 * y_minus_pivot_1_y) * rate_of_cos_a1
+        )
+        twice_velocity_x = 2.0 * velocity_x
+        rate_of_slope_2_by_x = twice_velocity_x - rate_of_cos_a1 * k.twice_arm_length_1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_slope_3_by_x = twice_velocity_x - rate_of_cos_a2 * k.twice_arm_length_2
+        rate_of_determinant = (
+            rate_of_slope_2_by_x * slope_3_by_y
+            + rate_of_slope_3_by_y * slope_2_by_x
+            - rate_of_slope_2_by_y * slope_3_by_x
+            - rate_of_slope_3_by_x * slope_2_by_y
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.machine_scale_squared_times_free_angle, rate_of_determinant, 0.0
+        )
+        rate_of_slope_3_by_a2 = (
+            (k.arm_length_2_squared_times_2 * cos_a2 + k.twice_arm_length_2 * x_minus_pivot_2_x) * rate_of_sin_a2
+            + (velocity_x * sin_a2 - velocity_y * cos_a2) * k.twice_arm_length_2
+            - (k.arm_length_2_squared_times_2 * sin_a2 + k.twice_arm_length_2 * y_minus_pivot_2_y) * rate_of_cos_a2
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.machine_scale_squared_times_free_angle)
+            & (height_square >= -k.rod_length_1_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            one_by_determinant_divisor
+            * (
+                (-rate_of_slope_2_by_a1 * slope_3_by_y - rate_of_slope_3_by_y * slope_2_by_a1) * speed_a1
+                + (rate_of_slope_2_by_y * slope_3_by_a2 + rate_of_slope_3_by_a2 * slope_2_by_y) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_x,
+            one_by_determinant_divisor
+            * (
+                (rate_of_slope_2_by_a1 * slope_3_by_x + rate_of_slope_3_by_x * slope_2_by_a1) * speed_a1
+                + (-rate_of_slope_2_by_x * slope_3_by_a2 - rate_of_slope_3_by_a2 * slope_2_by_x) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_y,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

@@ -71,3 +71,12 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_x, axis_y), Status.BAD_INPUT)
         return ((1.0, 0.0), (0.0, 1.0)), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y = axes
+        speed_x, speed_y = speeds
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_x, axis_y, speed_x, speed_y), Status.BAD_INPUT)
+        return (0.0, 0.0), status

@@ -73,3 +73,12 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_x, axis_y, axis_z), Status.BAD_INPUT)
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z = axes
+        speed_x, speed_y, speed_z = speeds
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_x, axis_y, axis_z, speed_x, speed_y, speed_z), Status.BAD_INPUT)
+        return (0.0, 0.0, 0.0), status

@@ -117,6 +117,15 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, k.direction_r),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_r = axes
+        speed_x, speed_y, speed_r = speeds
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_r, axis_x, axis_y, speed_r, speed_x, speed_y), Status.BAD_INPUT)
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

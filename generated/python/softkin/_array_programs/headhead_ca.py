@@ -203,3 +203,133 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 0.0, sin_c),
             (0.0, 0.0, 0.0, 1.0, 0.0),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_a = axes
+        speed_x, speed_y, speed_z, speed_c, speed_a = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_c, axis_x, axis_y, axis_z, speed_a, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_y_at_a = speed_y + k.fork_offset * rate_of_cos_c
+        cos_c = cos(c)
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_r23_at_a = -rate_of_sin_a * cos_c - rate_of_cos_c * sin_a
+        rate_of_y = rate_of_y_at_a + k.head_offset * rate_of_r22_at_a - k.pivot_length * rate_of_r23_at_a
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_x_at_a = speed_x - k.fork_offset * rate_of_sin_c
+        rate_of_r12_at_a = -rate_of_sin_c * cos_a - rate_of_cos_a * sin_c
+        rate_of_r13_at_a = rate_of_sin_a * sin_c + rate_of_sin_c * sin_a
+        rate_of_x = rate_of_x_at_a + k.head_offset * rate_of_r12_at_a - k.pivot_length * rate_of_r13_at_a
+        joint_y = axis_y - k.offset_y
+        y_at_a = joint_y + k.fork_offset * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = -cos_c * sin_a
+        y = y_at_a + k.head_offset * r22_at_a - k.pivot_length * r23_at_a
+        joint_x = axis_x - k.offset_x
+        x_at_a = joint_x - k.fork_offset * sin_c
+        r12_at_a = -cos_a * sin_c
+        r13_at_a = sin_a * sin_c
+        x = x_at_a + k.head_offset * r12_at_a - k.pivot_length * r13_at_a
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.head_offset * sin_a - k.pivot_length * cos_a
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z + k.head_offset * rate_of_sin_a - k.pivot_length * rate_of_cos_a
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            (rate_of_sin_c * z_minus_joint_z + rate_of_z_minus_speed_z * sin_c) * speed_a
+            + (speed_y - rate_of_y) * speed_c,
+            (-rate_of_z_minus_speed_z * cos_c - rate_of_cos_c * z_minus_joint_z) * speed_a
+            + (rate_of_x - speed_x) * speed_c,
+            speed_a
+            * (
+                (rate_of_y - rate_of_y_at_a) * cos_c
+                + rate_of_cos_c * (y - y_at_a)
+                + (x_at_a - x) * rate_of_sin_c
+                + (rate_of_x_at_a - rate_of_x) * sin_c
+            ),
+            2.0 * speed_a * (rate_of_cos_c * cos_c + rate_of_sin_c * sin_c),
+            rate_of_sin_a * speed_c
+            + speed_a
+            * (
+                rate_of_r12_at_a * cos_c
+                + r12_at_a * rate_of_cos_c
+                + r22_at_a * rate_of_sin_c
+                + rate_of_r22_at_a * sin_c
+            ),
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_a = axes
+        speed_x, speed_y, speed_z, speed_c, speed_a = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_c, axis_x, axis_y, axis_z, speed_a, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_y_at_a = speed_y + k.fork_offset * rate_of_cos_c
+        cos_c = cos(c)
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_r23_at_a = -rate_of_sin_a * cos_c - rate_of_cos_c * sin_a
+        rate_of_y = rate_of_y_at_a + k.head_offset * rate_of_r22_at_a - k.pivot_length * rate_of_r23_at_a
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_x_at_a = speed_x - k.fork_offset * rate_of_sin_c
+        rate_of_r12_at_a = -rate_of_sin_c * cos_a - rate_of_cos_a * sin_c
+        rate_of_r13_at_a = rate_of_sin_a * sin_c + rate_of_sin_c * sin_a
+        rate_of_x = rate_of_x_at_a + k.head_offset * rate_of_r12_at_a - k.pivot_length * rate_of_r13_at_a
+        joint_y = axis_y - k.offset_y
+        y_at_a = joint_y + k.fork_offset * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = -cos_c * sin_a
+        y = y_at_a + k.head_offset * r22_at_a - k.pivot_length * r23_at_a
+        joint_x = axis_x - k.offset_x
+        x_at_a = joint_x - k.fork_offset * sin_c
+        r12_at_a = -cos_a * sin_c
+        r13_at_a = sin_a * sin_c
+        x = x_at_a + k.head_offset * r12_at_a - k.pivot_length * r13_at_a
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.head_offset * sin_a - k.pivot_length * cos_a
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z + k.head_offset * rate_of_sin_a - k.pivot_length * rate_of_cos_a
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            (rate_of_sin_c * z_minus_joint_z + rate_of_z_minus_speed_z * sin_c) * speed_a
+            + (speed_y - rate_of_y) * speed_c,
+            (-rate_of_z_minus_speed_z * cos_c - rate_of_cos_c * z_minus_joint_z) * speed_a
+            + (rate_of_x - speed_x) * speed_c,
+            speed_a
+            * (
+                (rate_of_y - rate_of_y_at_a) * cos_c
+                + rate_of_cos_c * (y - y_at_a)
+                + (x_at_a - x) * rate_of_sin_c
+                + (rate_of_x_at_a - rate_of_x) * sin_c
+            ),
+            rate_of_cos_c * speed_a,
+            rate_of_sin_c * speed_a,
+            0.0,
+        ), status

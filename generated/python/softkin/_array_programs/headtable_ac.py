@@ -203,3 +203,153 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, -sin_c, 0.0),
             (0.0, 0.0, 0.0, 0.0, -1.0),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        speed_x, speed_y, speed_z, speed_a, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_c, axis_x, axis_y, axis_z, speed_a, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        rate_of_sin_a = speed_a * cos_a
+        joint_y = axis_y - k.offset_y
+        rate_of_y_at_a = speed_y * cos_c + joint_y * rate_of_cos_c
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        joint_x = axis_x - k.offset_x
+        rate_of_r23_at_a = -rate_of_sin_a * cos_c - rate_of_cos_c * sin_a
+        rate_of_y = (
+            rate_of_y_at_a
+            + k.head_offset * rate_of_r22_at_a
+            - joint_x * rate_of_sin_c
+            - k.pivot_length * rate_of_r23_at_a
+            - speed_x * sin_c
+        )
+        rate_of_x_at_a = joint_y * rate_of_sin_c + speed_y * sin_c
+        rate_of_r12_at_a = rate_of_sin_c * cos_a + rate_of_cos_a * sin_c
+        rate_of_r13_at_a = -rate_of_sin_a * sin_c - rate_of_sin_c * sin_a
+        rate_of_x = (
+            rate_of_x_at_a
+            + speed_x * cos_c
+            + k.head_offset * rate_of_r12_at_a
+            + joint_x * rate_of_cos_c
+            - k.pivot_length * rate_of_r13_at_a
+        )
+        y_at_a = joint_y * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = -cos_c * sin_a
+        y = y_at_a + k.head_offset * r22_at_a - joint_x * sin_c - k.pivot_length * r23_at_a
+        x_at_a = joint_y * sin_c
+        r12_at_a = cos_a * sin_c
+        r13_at_a = -sin_a * sin_c
+        x = x_at_a + joint_x * cos_c + k.head_offset * r12_at_a - k.pivot_length * r13_at_a
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.head_offset * sin_a - k.pivot_length * cos_a
+        shared_sum = speed_y + (joint_z - z) * speed_a
+        rate_of_z = speed_z + k.head_offset * rate_of_sin_a - k.pivot_length * rate_of_cos_a
+        shared_product = (speed_z - rate_of_z) * speed_a
+        return (
+            rate_of_cos_c * speed_x + rate_of_sin_c * shared_sum + rate_of_y * speed_c + shared_product * sin_c,
+            shared_product * cos_c + rate_of_cos_c * shared_sum - rate_of_sin_c * speed_x - rate_of_x * speed_c,
+            speed_a
+            * (
+                (rate_of_y - rate_of_y_at_a) * cos_c
+                + rate_of_cos_c * (y - y_at_a)
+                + rate_of_sin_c * (x - x_at_a)
+                + (rate_of_x - rate_of_x_at_a) * sin_c
+            ),
+            2.0 * speed_a * (rate_of_cos_c * cos_c + rate_of_sin_c * sin_c),
+            speed_a
+            * (
+                rate_of_r12_at_a * cos_c
+                + r12_at_a * rate_of_cos_c
+                - r22_at_a * rate_of_sin_c
+                - rate_of_r22_at_a * sin_c
+            )
+            - rate_of_sin_a * speed_c,
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_c = axes
+        speed_x, speed_y, speed_z, speed_a, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_c, axis_x, axis_y, axis_z, speed_a, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        joint_y = axis_y - k.offset_y
+        rate_of_y_at_a = speed_y * cos_c + joint_y * rate_of_cos_c
+        joint_x = axis_x - k.offset_x
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_r22_at_a = rate_of_cos_c * cos_a + rate_of_cos_a * cos_c
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_r23_at_a = -rate_of_sin_a * cos_c - rate_of_cos_c * sin_a
+        rate_of_y = (
+            rate_of_y_at_a
+            + k.head_offset * rate_of_r22_at_a
+            - joint_x * rate_of_sin_c
+            - k.pivot_length * rate_of_r23_at_a
+            - speed_x * sin_c
+        )
+        rate_of_x_at_a = joint_y * rate_of_sin_c + speed_y * sin_c
+        rate_of_r12_at_a = rate_of_sin_c * cos_a + rate_of_cos_a * sin_c
+        rate_of_r13_at_a = -rate_of_sin_a * sin_c - rate_of_sin_c * sin_a
+        rate_of_x = (
+            rate_of_x_at_a
+            + speed_x * cos_c
+            + k.head_offset * rate_of_r12_at_a
+            + joint_x * rate_of_cos_c
+            - k.pivot_length * rate_of_r13_at_a
+        )
+        y_at_a = joint_y * cos_c
+        r22_at_a = cos_a * cos_c
+        r23_at_a = -cos_c * sin_a
+        y = y_at_a + k.head_offset * r22_at_a - joint_x * sin_c - k.pivot_length * r23_at_a
+        x_at_a = joint_y * sin_c
+        r12_at_a = cos_a * sin_c
+        r13_at_a = -sin_a * sin_c
+        x = x_at_a + joint_x * cos_c + k.head_offset * r12_at_a - k.pivot_length * r13_at_a
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.head_offset * sin_a - k.pivot_length * cos_a
+        shared_sum = speed_y + (joint_z - z) * speed_a
+        rate_of_z = speed_z + k.head_offset * rate_of_sin_a - k.pivot_length * rate_of_cos_a
+        shared_product = (speed_z - rate_of_z) * speed_a
+        return (
+            rate_of_cos_c * speed_x + rate_of_sin_c * shared_sum + rate_of_y * speed_c + shared_product * sin_c,
+            shared_product * cos_c + rate_of_cos_c * shared_sum - rate_of_sin_c * speed_x - rate_of_x * speed_c,
+            speed_a
+            * (
+                (rate_of_y - rate_of_y_at_a) * cos_c
+                + rate_of_cos_c * (y - y_at_a)
+                + rate_of_sin_c * (x - x_at_a)
+                + (rate_of_x - rate_of_x_at_a) * sin_c
+            ),
+            rate_of_cos_c * speed_a,
+            -rate_of_sin_c * speed_a,
+            0.0,
+        ), status

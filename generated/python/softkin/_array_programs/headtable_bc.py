@@ -204,3 +204,153 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, cos_c, 0.0),
             (0.0, 0.0, 0.0, 0.0, -1.0),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_b, axis_c = axes
+        speed_x, speed_y, speed_z, speed_b, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_b, axis_c, axis_x, axis_y, axis_z, speed_b, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_sin_c = speed_c * cos_c
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        rate_of_sin_b = speed_b * cos_b
+        joint_x = axis_x - k.offset_x
+        rate_of_y_at_b = -joint_x * rate_of_sin_c - speed_x * sin_c
+        sin_b = sin(b)
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = -rate_of_sin_c * cos_b - rate_of_cos_b * sin_c
+        joint_y = axis_y - k.offset_y
+        rate_of_r23_at_b = -rate_of_sin_b * sin_c - rate_of_sin_c * sin_b
+        rate_of_y = (
+            rate_of_y_at_b
+            + speed_y * cos_c
+            + k.head_offset * rate_of_r21_at_b
+            + joint_y * rate_of_cos_c
+            - k.pivot_length * rate_of_r23_at_b
+        )
+        rate_of_x_at_b = speed_x * cos_c + joint_x * rate_of_cos_c
+        rate_of_r11_at_b = rate_of_cos_c * cos_b + rate_of_cos_b * cos_c
+        rate_of_r13_at_b = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_x = (
+            rate_of_x_at_b
+            + k.head_offset * rate_of_r11_at_b
+            + joint_y * rate_of_sin_c
+            + speed_y * sin_c
+            - k.pivot_length * rate_of_r13_at_b
+        )
+        y_at_b = -joint_x * sin_c
+        r21_at_b = -cos_b * sin_c
+        r23_at_b = -sin_b * sin_c
+        y = y_at_b + joint_y * cos_c + k.head_offset * r21_at_b - k.pivot_length * r23_at_b
+        x_at_b = joint_x * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + k.head_offset * r11_at_b + joint_y * sin_c - k.pivot_length * r13_at_b
+        joint_z = axis_z - k.offset_z
+        z = joint_z - k.pivot_length * cos_b - k.head_offset * sin_b
+        shared_sum = speed_x + (z - joint_z) * speed_b
+        rate_of_z = speed_z - k.head_offset * rate_of_sin_b - k.pivot_length * rate_of_cos_b
+        shared_product = (speed_z - rate_of_z) * speed_b
+        return (
+            rate_of_cos_c * shared_sum + rate_of_sin_c * speed_y + rate_of_y * speed_c - shared_product * cos_c,
+            rate_of_cos_c * speed_y + shared_product * sin_c - rate_of_sin_c * shared_sum - rate_of_x * speed_c,
+            speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_c
+                + (x_at_b - x) * rate_of_cos_c
+                + rate_of_sin_c * (y - y_at_b)
+                + (rate_of_y - rate_of_y_at_b) * sin_c
+            ),
+            rate_of_sin_b * speed_c
+            + speed_b
+            * (
+                rate_of_r21_at_b * cos_c
+                + r11_at_b * rate_of_sin_c
+                + r21_at_b * rate_of_cos_c
+                + rate_of_r11_at_b * sin_c
+            ),
+            2.0 * speed_b * (rate_of_cos_c * cos_c + rate_of_sin_c * sin_c),
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_b, axis_c = axes
+        speed_x, speed_y, speed_z, speed_b, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_b, axis_c, axis_x, axis_y, axis_z, speed_b, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_sin_c = speed_c * cos_c
+        joint_x = axis_x - k.offset_x
+        rate_of_y_at_b = -joint_x * rate_of_sin_c - speed_x * sin_c
+        joint_y = axis_y - k.offset_y
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        sin_b = sin(b)
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = -rate_of_sin_c * cos_b - rate_of_cos_b * sin_c
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = -rate_of_sin_b * sin_c - rate_of_sin_c * sin_b
+        rate_of_y = (
+            rate_of_y_at_b
+            + speed_y * cos_c
+            + k.head_offset * rate_of_r21_at_b
+            + joint_y * rate_of_cos_c
+            - k.pivot_length * rate_of_r23_at_b
+        )
+        rate_of_x_at_b = speed_x * cos_c + joint_x * rate_of_cos_c
+        rate_of_r11_at_b = rate_of_cos_c * cos_b + rate_of_cos_b * cos_c
+        rate_of_r13_at_b = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_x = (
+            rate_of_x_at_b
+            + k.head_offset * rate_of_r11_at_b
+            + joint_y * rate_of_sin_c
+            + speed_y * sin_c
+            - k.pivot_length * rate_of_r13_at_b
+        )
+        y_at_b = -joint_x * sin_c
+        r21_at_b = -cos_b * sin_c
+        r23_at_b = -sin_b * sin_c
+        y = y_at_b + joint_y * cos_c + k.head_offset * r21_at_b - k.pivot_length * r23_at_b
+        x_at_b = joint_x * cos_c
+        r11_at_b = cos_b * cos_c
+        r13_at_b = cos_c * sin_b
+        x = x_at_b + k.head_offset * r11_at_b + joint_y * sin_c - k.pivot_length * r13_at_b
+        joint_z = axis_z - k.offset_z
+        z = joint_z - k.pivot_length * cos_b - k.head_offset * sin_b
+        shared_sum = speed_x + (z - joint_z) * speed_b
+        rate_of_z = speed_z - k.head_offset * rate_of_sin_b - k.pivot_length * rate_of_cos_b
+        shared_product = (speed_z - rate_of_z) * speed_b
+        return (
+            rate_of_cos_c * shared_sum + rate_of_sin_c * speed_y + rate_of_y * speed_c - shared_product * cos_c,
+            rate_of_cos_c * speed_y + shared_product * sin_c - rate_of_sin_c * shared_sum - rate_of_x * speed_c,
+            speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_c
+                + (x_at_b - x) * rate_of_cos_c
+                + rate_of_sin_c * (y - y_at_b)
+                + (rate_of_y - rate_of_y_at_b) * sin_c
+            ),
+            rate_of_sin_c * speed_b,
+            rate_of_cos_c * speed_b,
+            0.0,
+        ), status

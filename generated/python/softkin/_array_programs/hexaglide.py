@@ -995,3 +995,496 @@ class ArrayPrograms(StartedPrograms):
                 column_6_wz * k.one_by_platform_radius,
             ),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4, speed_a5, speed_a6 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                speed_a1,
+                speed_a2,
+                speed_a3,
+                speed_a4,
+                speed_a5,
+                speed_a6,
+                k.start_x,
+                k.start_y,
+                k.start_z,
+            ),
+            Status.BAD_INPUT,
+        )
+        # pose of the platform, by Newton's method from the start
+        found = self.find_platform(
+            (
+                axis_a1,
+                axis_a2,
+                axis_a3,
+                axis_a4,
+                axis_a5,
+                axis_a6,
+                k.start_r11,
+                k.start_r12,
+                k.start_r13,
+                k.start_r21,
+                k.start_r22,
+                k.start_r23,
+                k.start_r31,
+                k.start_r32,
+                k.start_r33,
+                k.start_x,
+                k.start_y,
+                k.start_z,
+            ),
+            status,
+        )
+        (
+            found_x,
+            found_y,
+            found_z,
+            found_r11,
+            found_r12,
+            found_r13,
+            found_r21,
+            found_r22,
+            found_r23,
+            found_r31,
+            found_r32,
+            found_r33,
+            determinant,
+            *_,
+        ) = found
+        a1 = axis_a1 - k.offset_a1
+        arm_1_x = found_r11 * k.platform_1_x + found_r12 * k.platform_1_y + found_r13 * k.platform_1_z
+        rod_1_x = arm_1_x + found_x - a1  # leg 1: vector from its joint on the base to its joint on the platform
+        along_1_x = k.one_by_divisor_1_2 * rod_1_x
+        arm_1_y = found_r21 * k.platform_1_x + found_r22 * k.platform_1_y + found_r23 * k.platform_1_z
+        rod_1_y = arm_1_y + found_y - k.rail_1_y
+        along_1_y = k.one_by_divisor_1_2 * rod_1_y
+        arm_1_z = found_r31 * k.platform_1_x + found_r32 * k.platform_1_y + found_r33 * k.platform_1_z
+        rod_1_z = arm_1_z + found_z - k.rail_1_z
+        along_1_z = k.one_by_divisor_1_2 * rod_1_z
+        moment_1_x = (along_1_z * arm_1_y - along_1_y * arm_1_z) * k.one_by_platform_radius
+        moment_1_y = (along_1_x * arm_1_z - along_1_z * arm_1_x) * k.one_by_platform_radius
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * k.one_by_platform_radius
+        a2 = axis_a2 - k.offset_a2
+        arm_2_x = found_r11 * k.platform_2_x + found_r12 * k.platform_2_y + found_r13 * k.platform_2_z
+        rod_2_x = arm_2_x + found_x - a2  # leg 2: vector from its joint on the base to its joint on the platform
+        along_2_x = k.one_by_divisor_2_2 * rod_2_x
+        arm_2_y = found_r21 * k.platform_2_x + found_r22 * k.platform_2_y + found_r23 * k.platform_2_z
+        rod_2_y = arm_2_y + found_y - k.rail_2_y
+        along_2_y = k.one_by_divisor_2_2 * rod_2_y
+        arm_2_z = found_r31 * k.platform_2_x + found_r32 * k.platform_2_y + found_r33 * k.platform_2_z
+        rod_2_z = arm_2_z + found_z - k.rail_2_z
+        along_2_z = k.one_by_divisor_2_2 * rod_2_z
+        moment_2_x = (along_2_z * arm_2_y - along_2_y * arm_2_z) * k.one_by_platform_radius
+        moment_2_y = (along_2_x * arm_2_z - along_2_z * arm_2_x) * k.one_by_platform_radius
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * k.one_by_platform_radius
+        a3 = axis_a3 - k.offset_a3
+        arm_3_x = found_r11 * k.platform_3_x + found_r12 * k.platform_3_y + found_r13 * k.platform_3_z
+        rod_3_x = arm_3_x + found_x - a3  # leg 3: vector from its joint on the base to its joint on the platform
+        along_3_x = k.one_by_divisor_3_2 * rod_3_x
+        arm_3_y = found_r21 * k.platform_3_x + found_r22 * k.platform_3_y + found_r23 * k.platform_3_z
+        rod_3_y = arm_3_y + found_y - k.rail_3_y
+        along_3_y = k.one_by_divisor_3_2 * rod_3_y
+        arm_3_z = found_r31 * k.platform_3_x + found_r32 * k.platform_3_y + found_r33 * k.platform_3_z
+        rod_3_z = arm_3_z + found_z - k.rail_3_z
+        along_3_z = k.one_by_divisor_3_2 * rod_3_z
+        moment_3_x = (along_3_z * arm_3_y - along_3_y * arm_3_z) * k.one_by_platform_radius
+        moment_3_y = (along_3_x * arm_3_z - along_3_z * arm_3_x) * k.one_by_platform_radius
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * k.one_by_platform_radius
+        a4 = axis_a4 - k.offset_a4
+        arm_4_x = found_r11 * k.platform_4_x + found_r12 * k.platform_4_y + found_r13 * k.platform_4_z
+        rod_4_x = arm_4_x + found_x - a4  # leg 4: vector from its joint on the base to its joint on the platform
+        along_4_x = k.one_by_divisor_4_2 * rod_4_x
+        arm_4_y = found_r21 * k.platform_4_x + found_r22 * k.platform_4_y + found_r23 * k.platform_4_z
+        rod_4_y = arm_4_y + found_y - k.rail_4_y
+        along_4_y = k.one_by_divisor_4_2 * rod_4_y
+        arm_4_z = found_r31 * k.platform_4_x + found_r32 * k.platform_4_y + found_r33 * k.platform_4_z
+        rod_4_z = arm_4_z + found_z - k.rail_4_z
+        along_4_z = k.one_by_divisor_4_2 * rod_4_z
+        moment_4_x = (along_4_z * arm_4_y - along_4_y * arm_4_z) * k.one_by_platform_radius
+        moment_4_y = (along_4_x * arm_4_z - along_4_z * arm_4_x) * k.one_by_platform_radius
+        moment_4_z = (along_4_y * arm_4_x - along_4_x * arm_4_y) * k.one_by_platform_radius
+        a5 = axis_a5 - k.offset_a5
+        arm_5_x = found_r11 * k.platform_5_x + found_r12 * k.platform_5_y + found_r13 * k.platform_5_z
+        rod_5_x = arm_5_x + found_x - a5  # leg 5: vector from its joint on the base to its joint on the platform
+        along_5_x = k.one_by_divisor_5_2 * rod_5_x
+        arm_5_y = found_r21 * k.platform_5_x + found_r22 * k.platform_5_y + found_r23 * k.platform_5_z
+        rod_5_y = arm_5_y + found_y - k.rail_5_y
+        along_5_y = k.one_by_divisor_5_2 * rod_5_y
+        arm_5_z = found_r31 * k.platform_5_x + found_r32 * k.platform_5_y + found_r33 * k.platform_5_z
+        rod_5_z = arm_5_z + found_z - k.rail_5_z
+        along_5_z = k.one_by_divisor_5_2 * rod_5_z
+        moment_5_x = (along_5_z * arm_5_y - along_5_y * arm_5_z) * k.one_by_platform_radius
+        moment_5_y = (along_5_x * arm_5_z - along_5_z * arm_5_x) * k.one_by_platform_radius
+        moment_5_z = (along_5_y * arm_5_x - along_5_x * arm_5_y) * k.one_by_platform_radius
+        a6 = axis_a6 - k.offset_a6
+        arm_6_x = found_r11 * k.platform_6_x + found_r12 * k.platform_6_y + found_r13 * k.platform_6_z
+        rod_6_x = arm_6_x + found_x - a6  # leg 6: vector from its joint on the base to its joint on the platform
+        along_6_x = k.one_by_divisor_6_2 * rod_6_x
+        arm_6_y = found_r21 * k.platform_6_x + found_r22 * k.platform_6_y + found_r23 * k.platform_6_z
+        rod_6_y = arm_6_y + found_y - k.rail_6_y
+        along_6_y = k.one_by_divisor_6_2 * rod_6_y
+        arm_6_z = found_r31 * k.platform_6_x + found_r32 * k.platform_6_y + found_r33 * k.platform_6_z
+        rod_6_z = arm_6_z + found_z - k.rail_6_z
+        along_6_z = k.one_by_divisor_6_2 * rod_6_z
+        moment_6_x = (along_6_z * arm_6_y - along_6_y * arm_6_z) * k.one_by_platform_radius
+        moment_6_y = (along_6_x * arm_6_z - along_6_z * arm_6_x) * k.one_by_platform_radius
+        moment_6_z = (along_6_y * arm_6_x - along_6_x * arm_6_y) * k.one_by_platform_radius
+        # twist of the platform per velocity of each axis
+        _, column_1_vx, column_1_vy, column_1_vz, column_1_wx, column_1_wy, column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (along_1_x * speed_a1,),
+                (along_2_x * speed_a2,),
+                (along_3_x * speed_a3,),
+                (along_4_x * speed_a4,),
+                (along_5_x * speed_a5,),
+                (along_6_x * speed_a6,),
+            ),
+        )
+        product_in_rate_of_arm_1_x = (column_1_wy * found_r33 - column_1_wz * found_r23) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_x_2 = (column_1_wy * found_r32 - column_1_wz * found_r22) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_x_3 = (column_1_wy * found_r31 - column_1_wz * found_r21) * k.one_by_platform_radius
+        rate_of_arm_1_x = (
+            k.platform_1_x * product_in_rate_of_arm_1_x_3
+            + k.platform_1_y * product_in_rate_of_arm_1_x_2
+            + k.platform_1_z * product_in_rate_of_arm_1_x
+        )
+        speed_a1_minus_column_1_vx = speed_a1 - column_1_vx
+        rate_of_rod_1_x = rate_of_arm_1_x - speed_a1_minus_column_1_vx
+        rate_of_along_1_x = k.one_by_divisor_1_2 * rate_of_rod_1_x
+        product_in_rate_of_arm_1_y = (column_1_wz * found_r13 - column_1_wx * found_r33) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_y_2 = (column_1_wz * found_r12 - column_1_wx * found_r32) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_y_3 = (column_1_wz * found_r11 - column_1_wx * found_r31) * k.one_by_platform_radius
+        rate_of_arm_1_y = (
+            k.platform_1_x * product_in_rate_of_arm_1_y_3
+            + k.platform_1_y * product_in_rate_of_arm_1_y_2
+            + k.platform_1_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y
+        rate_of_along_1_y = k.one_by_divisor_1_2 * rate_of_rod_1_y
+        product_in_rate_of_arm_1_z = (column_1_wx * found_r23 - column_1_wy * found_r13) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_z_2 = (column_1_wx * found_r22 - column_1_wy * found_r12) * k.one_by_platform_radius
+        product_in_rate_of_arm_1_z_3 = (column_1_wx * found_r21 - column_1_wy * found_r11) * k.one_by_platform_radius
+        rate_of_arm_1_z = (
+            k.platform_1_x * product_in_rate_of_arm_1_z_3
+            + k.platform_1_y * product_in_rate_of_arm_1_z_2
+            + k.platform_1_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_1_z = column_1_vz + rate_of_arm_1_z
+        rate_of_along_1_z = k.one_by_divisor_1_2 * rate_of_rod_1_z
+        rate_of_moment_1_x = (
+            along_1_z * rate_of_arm_1_y
+            + arm_1_y * rate_of_along_1_z
+            - along_1_y * rate_of_arm_1_z
+            - arm_1_z * rate_of_along_1_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_1_y = (
+            along_1_x * rate_of_arm_1_z
+            + arm_1_z * rate_of_along_1_x
+            - along_1_z * rate_of_arm_1_x
+            - arm_1_x * rate_of_along_1_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_1_z = (
+            along_1_y * rate_of_arm_1_x
+            + arm_1_x * rate_of_along_1_y
+            - along_1_x * rate_of_arm_1_y
+            - arm_1_y * rate_of_along_1_x
+        ) * k.one_by_platform_radius
+        rate_of_arm_2_x = (
+            k.platform_2_x * product_in_rate_of_arm_1_x_3
+            + k.platform_2_y * product_in_rate_of_arm_1_x_2
+            + k.platform_2_z * product_in_rate_of_arm_1_x
+        )
+        speed_a2_minus_column_1_vx = speed_a2 - column_1_vx
+        rate_of_rod_2_x = rate_of_arm_2_x - speed_a2_minus_column_1_vx
+        rate_of_along_2_x = k.one_by_divisor_2_2 * rate_of_rod_2_x
+        rate_of_arm_2_y = (
+            k.platform_2_x * product_in_rate_of_arm_1_y_3
+            + k.platform_2_y * product_in_rate_of_arm_1_y_2
+            + k.platform_2_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y
+        rate_of_along_2_y = k.one_by_divisor_2_2 * rate_of_rod_2_y
+        rate_of_arm_2_z = (
+            k.platform_2_x * product_in_rate_of_arm_1_z_3
+            + k.platform_2_y * product_in_rate_of_arm_1_z_2
+            + k.platform_2_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_2_z = column_1_vz + rate_of_arm_2_z
+        rate_of_along_2_z = k.one_by_divisor_2_2 * rate_of_rod_2_z
+        rate_of_moment_2_x = (
+            along_2_z * rate_of_arm_2_y
+            + arm_2_y * rate_of_along_2_z
+            - along_2_y * rate_of_arm_2_z
+            - arm_2_z * rate_of_along_2_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_2_y = (
+            along_2_x * rate_of_arm_2_z
+            + arm_2_z * rate_of_along_2_x
+            - along_2_z * rate_of_arm_2_x
+            - arm_2_x * rate_of_along_2_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_2_z = (
+            along_2_y * rate_of_arm_2_x
+            + arm_2_x * rate_of_along_2_y
+            - along_2_x * rate_of_arm_2_y
+            - arm_2_y * rate_of_along_2_x
+        ) * k.one_by_platform_radius
+        rate_of_arm_3_x = (
+            k.platform_3_x * product_in_rate_of_arm_1_x_3
+            + k.platform_3_y * product_in_rate_of_arm_1_x_2
+            + k.platform_3_z * product_in_rate_of_arm_1_x
+        )
+        speed_a3_minus_column_1_vx = speed_a3 - column_1_vx
+        rate_of_rod_3_x = rate_of_arm_3_x - speed_a3_minus_column_1_vx
+        rate_of_along_3_x = k.one_by_divisor_3_2 * rate_of_rod_3_x
+        rate_of_arm_3_y = (
+            k.platform_3_x * product_in_rate_of_arm_1_y_3
+            + k.platform_3_y * product_in_rate_of_arm_1_y_2
+            + k.platform_3_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y
+        rate_of_along_3_y = k.one_by_divisor_3_2 * rate_of_rod_3_y
+        rate_of_arm_3_z = (
+            k.platform_3_x * product_in_rate_of_arm_1_z_3
+            + k.platform_3_y * product_in_rate_of_arm_1_z_2
+            + k.platform_3_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_3_z = column_1_vz + rate_of_arm_3_z
+        rate_of_along_3_z = k.one_by_divisor_3_2 * rate_of_rod_3_z
+        rate_of_moment_3_x = (
+            along_3_z * rate_of_arm_3_y
+            + arm_3_y * rate_of_along_3_z
+            - along_3_y * rate_of_arm_3_z
+            - arm_3_z * rate_of_along_3_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_3_y = (
+            along_3_x * rate_of_arm_3_z
+            + arm_3_z * rate_of_along_3_x
+            - along_3_z * rate_of_arm_3_x
+            - arm_3_x * rate_of_along_3_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_3_z = (
+            along_3_y * rate_of_arm_3_x
+            + arm_3_x * rate_of_along_3_y
+            - along_3_x * rate_of_arm_3_y
+            - arm_3_y * rate_of_along_3_x
+        ) * k.one_by_platform_radius
+        rate_of_arm_4_x = (
+            k.platform_4_x * product_in_rate_of_arm_1_x_3
+            + k.platform_4_y * product_in_rate_of_arm_1_x_2
+            + k.platform_4_z * product_in_rate_of_arm_1_x
+        )
+        speed_a4_minus_column_1_vx = speed_a4 - column_1_vx
+        rate_of_rod_4_x = rate_of_arm_4_x - speed_a4_minus_column_1_vx
+        rate_of_along_4_x = k.one_by_divisor_4_2 * rate_of_rod_4_x
+        rate_of_arm_4_y = (
+            k.platform_4_x * product_in_rate_of_arm_1_y_3
+            + k.platform_4_y * product_in_rate_of_arm_1_y_2
+            + k.platform_4_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_4_y = column_1_vy + rate_of_arm_4_y
+        rate_of_along_4_y = k.one_by_divisor_4_2 * rate_of_rod_4_y
+        rate_of_arm_4_z = (
+            k.platform_4_x * product_in_rate_of_arm_1_z_3
+            + k.platform_4_y * product_in_rate_of_arm_1_z_2
+            + k.platform_4_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_4_z = column_1_vz + rate_of_arm_4_z
+        rate_of_along_4_z = k.one_by_divisor_4_2 * rate_of_rod_4_z
+        rate_of_moment_4_x = (
+            along_4_z * rate_of_arm_4_y
+            + arm_4_y * rate_of_along_4_z
+            - along_4_y * rate_of_arm_4_z
+            - arm_4_z * rate_of_along_4_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_4_y = (
+            along_4_x * rate_of_arm_4_z
+            + arm_4_z * rate_of_along_4_x
+            - along_4_z * rate_of_arm_4_x
+            - arm_4_x * rate_of_along_4_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_4_z = (
+            along_4_y * rate_of_arm_4_x
+            + arm_4_x * rate_of_along_4_y
+            - along_4_x * rate_of_arm_4_y
+            - arm_4_y * rate_of_along_4_x
+        ) * k.one_by_platform_radius
+        rate_of_arm_5_x = (
+            k.platform_5_x * product_in_rate_of_arm_1_x_3
+            + k.platform_5_y * product_in_rate_of_arm_1_x_2
+            + k.platform_5_z * product_in_rate_of_arm_1_x
+        )
+        speed_a5_minus_column_1_vx = speed_a5 - column_1_vx
+        rate_of_rod_5_x = rate_of_arm_5_x - speed_a5_minus_column_1_vx
+        rate_of_along_5_x = k.one_by_divisor_5_2 * rate_of_rod_5_x
+        rate_of_arm_5_y = (
+            k.platform_5_x * product_in_rate_of_arm_1_y_3
+            + k.platform_5_y * product_in_rate_of_arm_1_y_2
+            + k.platform_5_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_5_y = column_1_vy + rate_of_arm_5_y
+        rate_of_along_5_y = k.one_by_divisor_5_2 * rate_of_rod_5_y
+        rate_of_arm_5_z = (
+            k.platform_5_x * product_in_rate_of_arm_1_z_3
+            + k.platform_5_y * product_in_rate_of_arm_1_z_2
+            + k.platform_5_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_5_z = column_1_vz + rate_of_arm_5_z
+        rate_of_along_5_z = k.one_by_divisor_5_2 * rate_of_rod_5_z
+        rate_of_moment_5_x = (
+            along_5_z * rate_of_arm_5_y
+            + arm_5_y * rate_of_along_5_z
+            - along_5_y * rate_of_arm_5_z
+            - arm_5_z * rate_of_along_5_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_5_y = (
+            along_5_x * rate_of_arm_5_z
+            + arm_5_z * rate_of_along_5_x
+            - along_5_z * rate_of_arm_5_x
+            - arm_5_x * rate_of_along_5_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_5_z = (
+            along_5_y * rate_of_arm_5_x
+            + arm_5_x * rate_of_along_5_y
+            - along_5_x * rate_of_arm_5_y
+            - arm_5_y * rate_of_along_5_x
+        ) * k.one_by_platform_radius
+        rate_of_arm_6_x = (
+            k.platform_6_x * product_in_rate_of_arm_1_x_3
+            + k.platform_6_y * product_in_rate_of_arm_1_x_2
+            + k.platform_6_z * product_in_rate_of_arm_1_x
+        )
+        speed_a6_minus_column_1_vx = speed_a6 - column_1_vx
+        rate_of_rod_6_x = rate_of_arm_6_x - speed_a6_minus_column_1_vx
+        rate_of_along_6_x = k.one_by_divisor_6_2 * rate_of_rod_6_x
+        rate_of_arm_6_y = (
+            k.platform_6_x * product_in_rate_of_arm_1_y_3
+            + k.platform_6_y * product_in_rate_of_arm_1_y_2
+            + k.platform_6_z * product_in_rate_of_arm_1_y
+        )
+        rate_of_rod_6_y = column_1_vy + rate_of_arm_6_y
+        rate_of_along_6_y = k.one_by_divisor_6_2 * rate_of_rod_6_y
+        rate_of_arm_6_z = (
+            k.platform_6_x * product_in_rate_of_arm_1_z_3
+            + k.platform_6_y * product_in_rate_of_arm_1_z_2
+            + k.platform_6_z * product_in_rate_of_arm_1_z
+        )
+        rate_of_rod_6_z = column_1_vz + rate_of_arm_6_z
+        rate_of_along_6_z = k.one_by_divisor_6_2 * rate_of_rod_6_z
+        rate_of_moment_6_x = (
+            along_6_z * rate_of_arm_6_y
+            + arm_6_y * rate_of_along_6_z
+            - along_6_y * rate_of_arm_6_z
+            - arm_6_z * rate_of_along_6_y
+        ) * k.one_by_platform_radius
+        rate_of_moment_6_y = (
+            along_6_x * rate_of_arm_6_z
+            + arm_6_z * rate_of_along_6_x
+            - along_6_z * rate_of_arm_6_x
+            - arm_6_x * rate_of_along_6_z
+        ) * k.one_by_platform_radius
+        rate_of_moment_6_z = (
+            along_6_y * rate_of_arm_6_x
+            + arm_6_x * rate_of_along_6_y
+            - along_6_x * rate_of_arm_6_y
+            - arm_6_y * rate_of_along_6_x
+        ) * k.one_by_platform_radius
+        (
+            _,
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            rate_of_column_1_wx,
+            rate_of_column_1_wy,
+            rate_of_column_1_wz,
+        ) = solve(
+            (
+                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
+                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
+                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
+                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
+                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
+                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+            ),
+            (
+                (
+                    rate_of_along_1_x * speed_a1_minus_column_1_vx
+                    - column_1_vy * rate_of_along_1_y
+                    - column_1_vz * rate_of_along_1_z
+                    - column_1_wx * rate_of_moment_1_x
+                    - column_1_wy * rate_of_moment_1_y
+                    - column_1_wz * rate_of_moment_1_z,
+                ),
+                (
+                    rate_of_along_2_x * speed_a2_minus_column_1_vx
+                    - column_1_vy * rate_of_along_2_y
+                    - column_1_vz * rate_of_along_2_z
+                    - column_1_wx * rate_of_moment_2_x
+                    - column_1_wy * rate_of_moment_2_y
+                    - column_1_wz * rate_of_moment_2_z,
+                ),
+                (
+                    rate_of_along_3_x * speed_a3_minus_column_1_vx
+                    - column_1_vy * rate_of_along_3_y
+                    - column_1_vz * rate_of_along_3_z
+                    - column_1_wx * rate_of_moment_3_x
+                    - column_1_wy * rate_of_moment_3_y
+                    - column_1_wz * rate_of_moment_3_z,
+                ),
+                (
+                    rate_of_along_4_x * speed_a4_minus_column_1_vx
+                    - column_1_vy * rate_of_along_4_y
+                    - column_1_vz * rate_of_along_4_z
+                    - column_1_wx * rate_of_moment_4_x
+                    - column_1_wy * rate_of_moment_4_y
+                    - column_1_wz * rate_of_moment_4_z,
+                ),
+                (
+                    rate_of_along_5_x * speed_a5_minus_column_1_vx
+                    - column_1_vy * rate_of_along_5_y
+                    - column_1_vz * rate_of_along_5_z
+                    - column_1_wx * rate_of_moment_5_x
+                    - column_1_wy * rate_of_moment_5_y
+                    - column_1_wz * rate_of_moment_5_z,
+                ),
+                (
+                    rate_of_along_6_x * speed_a6_minus_column_1_vx
+                    - column_1_vy * rate_of_along_6_y
+                    - column_1_vz * rate_of_along_6_z
+                    - column_1_wx * rate_of_moment_6_x
+                    - column_1_wy * rate_of_moment_6_y
+                    - column_1_wz * rate_of_moment_6_z,
+                ),
+            ),
+        )
+        # nothing controls the plate
+        require(status, absolute(determinant) > 2e-12, Status.IMPOSSIBLE)
+        return (
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            rate_of_column_1_vz,
+            k.one_by_platform_radius * rate_of_column_1_wx,
+            k.one_by_platform_radius * rate_of_column_1_wy,
+            k.one_by_platform_radius * rate_of_column_1_wz,
+        ), status

@@ -85,3 +85,12 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(axis_a, axis_b, axis_z), Status.BAD_INPUT)
         return ((0.5, -0.5, 0.0), (-0.5, -0.5, 0.0), (0.0, 0.0, 1.0)), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a, axis_b, axis_z = axes
+        speed_a, speed_b, speed_z = speeds
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_z, speed_a, speed_b, speed_z), Status.BAD_INPUT)
+        return (0.0, 0.0, 0.0), status

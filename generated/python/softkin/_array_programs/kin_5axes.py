@@ -204,3 +204,130 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 0.0, cos_a_times_tool_side),
             (0.0, 0.0, 0.0, 1.0, 0.0),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        speed_x, speed_y, speed_z, speed_a, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_b, axis_x, axis_y, axis_z, speed_a, speed_b, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        joint_y = axis_y - k.offset_y
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        sin_b_times_tool_side = k.tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = joint_y + r23_at_b * k.tool_length_times_tool_side
+        joint_x = axis_x - k.offset_x
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = joint_x + r13_at_b * k.tool_length_times_tool_side
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r31_at_b = -rate_of_sin_b * k.tool_side
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        joint_z = axis_z - k.offset_z
+        z = joint_z + k.tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        rate_of_z = speed_z + rate_of_cos_b * k.tool_length_times_tool_side
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * k.tool_side
+        rate_of_y = speed_y + rate_of_r23_at_b * k.tool_length_times_tool_side
+        speed_y_minus_rate_of_y = speed_y - rate_of_y
+        rate_of_r13_at_b = k.tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = speed_x + rate_of_r13_at_b * k.tool_length_times_tool_side
+        rate_of_x_minus_speed_x = rate_of_x - speed_x
+        tool_side_times_speed_b = speed_b * k.tool_side
+        return (
+            speed_a * speed_y_minus_rate_of_y
+            + tool_side_times_speed_b * (rate_of_z_minus_speed_z * cos_a + rate_of_cos_a * z_minus_joint_z),
+            rate_of_x_minus_speed_x * speed_a
+            + (rate_of_sin_a * z_minus_joint_z + rate_of_z_minus_speed_z * sin_a) * tool_side_times_speed_b,
+            (
+                (joint_x - x) * rate_of_cos_a
+                + (joint_y - y) * rate_of_sin_a
+                + speed_y_minus_rate_of_y * sin_a
+                - rate_of_x_minus_speed_x * cos_a
+            )
+            * tool_side_times_speed_b,
+            rate_of_r31_at_b * speed_a
+            + tool_side_times_speed_b
+            * (
+                rate_of_r21_at_b * cos_a
+                + r21_at_b * rate_of_cos_a
+                - r11_at_b * rate_of_sin_a
+                - rate_of_r11_at_b * sin_a
+            ),
+            2.0 * rate_of_sin_a * tool_side_times_speed_b * sin_a + rate_of_cos_a * speed_b * k.twice_tool_side * cos_a,
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_a, axis_b = axes
+        speed_x, speed_y, speed_z, speed_a, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a, axis_b, axis_x, axis_y, axis_z, speed_a, speed_b, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        joint_y = axis_y - k.offset_y
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        sin_b_times_tool_side = k.tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = joint_y + r23_at_b * k.tool_length_times_tool_side
+        joint_x = axis_x - k.offset_x
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = joint_x + r13_at_b * k.tool_length_times_tool_side
+        joint_z = axis_z - k.offset_z
+        cos_b = cos(b)
+        z = joint_z + k.tool_length_times_tool_side * cos_b
+        z_minus_joint_z = z - joint_z
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_z = speed_z + rate_of_cos_b * k.tool_length_times_tool_side
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * k.tool_side
+        rate_of_y = speed_y + rate_of_r23_at_b * k.tool_length_times_tool_side
+        speed_y_minus_rate_of_y = speed_y - rate_of_y
+        rate_of_r13_at_b = k.tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = speed_x + rate_of_r13_at_b * k.tool_length_times_tool_side
+        rate_of_x_minus_speed_x = rate_of_x - speed_x
+        tool_side_times_speed_b = speed_b * k.tool_side
+        return (
+            speed_a * speed_y_minus_rate_of_y
+            + tool_side_times_speed_b * (rate_of_z_minus_speed_z * cos_a + rate_of_cos_a * z_minus_joint_z),
+            rate_of_x_minus_speed_x * speed_a
+            + (rate_of_sin_a * z_minus_joint_z + rate_of_z_minus_speed_z * sin_a) * tool_side_times_speed_b,
+            (
+                (joint_x - x) * rate_of_cos_a
+                + (joint_y - y) * rate_of_sin_a
+                + speed_y_minus_rate_of_y * sin_a
+                - rate_of_x_minus_speed_x * cos_a
+            )
+            * tool_side_times_speed_b,
+            -rate_of_sin_a * tool_side_times_speed_b,
+            rate_of_cos_a * tool_side_times_speed_b,
+            0.0,
+        ), status

@@ -427,3 +427,240 @@ class ArrayPrograms(Programs):
                 -slope_1_by_x * slope_2_by_a2_times_one_by_determinant,
             ),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, speed_a1, speed_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        pivot_upper_x = -k.link_length_1 * sin_a1  # rod upper: centre about which it swings
+        cos_a1 = cos(a1)
+        pivot_upper_y = -k.link_length_1 * cos_a1
+        centre_1_x: Real
+        centre_1_y: Real
+        if k.swap_xy:
+            centre_1_x = pivot_upper_y
+            centre_1_y = pivot_upper_x
+        else:
+            centre_1_x = pivot_upper_x
+            centre_1_y = pivot_upper_y
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        cos_a2 = cos(a2)
+        cos_a2_times_link_length_5 = k.link_length_5 * cos_a2
+        # rod rear: centre about which it swings
+        pivot_rear_x = k.sum_in_pivot_rear_x * sin_a1 - cos_a2_times_link_length_5
+        sin_a2 = sin(a2)
+        link_length_5_times_sin_a2 = k.link_length_5 * sin_a2
+        pivot_rear_y = link_length_5_times_sin_a2 + k.sum_in_pivot_rear_x * cos_a1
+        centre_2_x = -select(k.swap_xy, pivot_rear_y, pivot_rear_x) * k.link_length_2_by_link_length_3
+        centre_1_to_2_x = centre_2_x - centre_1_x  # vector from centre 1 to centre 2
+        centre_2_y = -select(k.swap_xy, pivot_rear_x, pivot_rear_y) * k.link_length_2_by_link_length_3
+        centre_1_to_2_y = centre_2_y - centre_1_y
+        # squared length of the normal
+        normal_square = centre_1_to_2_x * centre_1_to_2_x + centre_1_to_2_y * centre_1_to_2_y
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.link_length_2_plus_radius_2 - between_centres)
+            * (between_centres + k.link_length_2_minus_radius_2)
+            * (between_centres + k.link_length_2_plus_radius_2)
+            * (between_centres - k.link_length_2_minus_radius_2)
+            * one_by_normal_square
+        )
+        twice_link_length_1_times_sin_a1 = k.twice_link_length_1 * sin_a1
+        twice_link_length_1_times_cos_a1 = k.twice_link_length_1 * cos_a1
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_divisor + k.product_in_foot_fraction) * one_by_normal_square
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = centre_1_x + foot_x - centre_1_to_2_y * height_by_normal
+        twice_x = 2.0 * x
+        foot_y = centre_1_to_2_y * foot_fraction
+        y = centre_1_y + foot_y + centre_1_to_2_x * height_by_normal
+        twice_y = 2.0 * y
+        link_length_3_by_link_length_2_times_x = k.link_length_3_by_link_length_2 * x
+        sum_in_slope_2_by_y = cos_a2_times_link_length_5 - k.product_in_slope_2_by_x * sin_a1
+        sum_in_slope_2_by_x = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_x
+        sum_in_slope_2_by_y_2 = link_length_5_times_sin_a2 + k.product_in_slope_2_by_x * cos_a1
+        sum_in_slope_2_by_x_2 = link_length_3_by_link_length_2_times_x + sum_in_slope_2_by_y_2
+        link_length_3_by_link_length_2_times_y = k.link_length_3_by_link_length_2 * y
+        sum_in_slope_2_by_y_3 = link_length_3_by_link_length_2_times_y + sum_in_slope_2_by_y_2
+        sum_in_slope_2_by_y_4 = sum_in_slope_2_by_y - link_length_3_by_link_length_2_times_y
+        y_minus_pivot_upper_x = y - pivot_upper_x
+        x_minus_pivot_upper_y = x - pivot_upper_y
+        slope_1_by_x: Real
+        slope_1_by_y: Real
+        slope_1_by_a1: Real
+        slope_2_by_a1: Real
+        slope_2_by_a2: Real
+        if k.swap_xy:
+            slope_1_by_x = twice_link_length_1_times_cos_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_sin_a1 + twice_y
+            slope_1_by_a1 = k.twice_link_length_1 * (y_minus_pivot_upper_x * cos_a1 - x_minus_pivot_upper_y * sin_a1)
+            slope_2_by_a1 = (
+                -sum_in_slope_2_by_y_4 * cos_a1 - sum_in_slope_2_by_x_2 * sin_a1
+            ) * k.product_in_slope_2_by_a1
+            slope_2_by_a2 = k.twice_link_length_5 * (sum_in_slope_2_by_x_2 * cos_a2 - sum_in_slope_2_by_y_4 * sin_a2)
+        else:
+            x_minus_pivot_upper_x = x - pivot_upper_x
+            y_minus_pivot_upper_y = y - pivot_upper_y
+            slope_1_by_x = twice_link_length_1_times_sin_a1 + twice_x
+            slope_1_by_y = twice_link_length_1_times_cos_a1 + twice_y
+            slope_1_by_a1 = k.twice_link_length_1 * (x_minus_pivot_upper_x * cos_a1 - y_minus_pivot_upper_y * sin_a1)
+            slope_2_by_a1 = (
+                -sum_in_slope_2_by_x * cos_a1 - sum_in_slope_2_by_y_3 * sin_a1
+            ) * k.product_in_slope_2_by_a1
+            slope_2_by_a2 = k.twice_link_length_5 * (sum_in_slope_2_by_y_3 * cos_a2 - sum_in_slope_2_by_x * sin_a2)
+        slope_2_by_x = (
+            -select(k.swap_xy, -sum_in_slope_2_by_x_2, sum_in_slope_2_by_x) * k.link_length_3_times_2_by_link_length_2
+        )
+        slope_2_by_y = (
+            -select(k.swap_xy, sum_in_slope_2_by_y_4, -sum_in_slope_2_by_y_3) * k.link_length_3_times_2_by_link_length_2
+        )
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x
+        determinant_divisor = select(absolute(determinant) > k.machine_scale_squared_times_free_angle, determinant, 1.0)
+        one_by_determinant = 1.0 / determinant_divisor
+        slope_2_by_a2_times_speed_a2 = slope_2_by_a2 * speed_a2
+        velocity_x = one_by_determinant * (
+            slope_1_by_y * slope_2_by_a2_times_speed_a2
+            + (slope_1_by_y * slope_2_by_a1 - slope_1_by_a1 * slope_2_by_y) * speed_a1
+        )
+        velocity_y = (
+            (slope_1_by_a1 * slope_2_by_x - slope_1_by_x * slope_2_by_a1) * speed_a1
+            - slope_1_by_x * slope_2_by_a2_times_speed_a2
+        ) * one_by_determinant
+        twice_velocity_y = 2.0 * velocity_y
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        twice_link_length_1_times_rate_of_cos_a1 = rate_of_cos_a1 * k.twice_link_length_1
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        twice_link_length_1_times_rate_of_sin_a1 = rate_of_sin_a1 * k.twice_link_length_1
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        sum_in_rate_of_slope_2_by_y = (
+            k.quotient_in_rate_of_slope_2_by_y * rate_of_cos_a1 + k.quotient_in_rate_of_slope_2_by_y_2 * rate_of_sin_a2
+        )
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        sum_in_rate_of_slope_2_by_y_2 = (
+            k.quotient_in_rate_of_slope_2_by_y * rate_of_sin_a1 - k.quotient_in_rate_of_slope_2_by_y_2 * rate_of_cos_a2
+        )
+        product_in_rate_of_slope_2_by_y = k.quotient_in_rate_of_slope_2_by_y_3 * velocity_y
+        product_in_rate_of_slope_1_by_a1 = k.link_length_1_squared_times_2 * cos_a1
+        product_in_rate_of_slope_1_by_a1_2 = k.link_length_1_squared_times_2 * sin_a1
+        sum_in_rate_of_slope_2_by_a1_2 = velocity_x * sin_a1 - velocity_y * cos_a1
+        sum_in_rate_of_slope_2_by_a1 = velocity_y * sin_a1 - velocity_x * cos_a1
+        twice_velocity_x = 2.0 * velocity_x
+        product_in_rate_of_slope_2_by_x = k.quotient_in_rate_of_slope_2_by_y_3 * velocity_x
+        rate_of_slope_1_by_y: Real
+        rate_of_slope_2_by_y: Real
+        rate_of_slope_1_by_a1: Real
+        rate_of_slope_1_by_x: Real
+        rate_of_slope_2_by_x: Real
+        if k.swap_xy:
+            rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_y
+            rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y_2
+            rate_of_slope_1_by_a1 = (
+                (k.twice_link_length_1 * y_minus_pivot_upper_x - product_in_rate_of_slope_1_by_a1_2) * rate_of_cos_a1
+                + (product_in_rate_of_slope_1_by_a1 - k.twice_link_length_1 * x_minus_pivot_upper_y) * rate_of_sin_a1
+                - sum_in_rate_of_slope_2_by_a1_2 * k.twice_link_length_1
+            )
+            rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_x
+            rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y
+        else:
+            x_minus_pivot_upper_x = x - pivot_upper_x
+            y_minus_pivot_upper_y = y - pivot_upper_y
+            rate_of_slope_1_by_y = twice_link_length_1_times_rate_of_cos_a1 + twice_velocity_y
+            rate_of_slope_2_by_y = product_in_rate_of_slope_2_by_y + sum_in_rate_of_slope_2_by_y
+            rate_of_slope_1_by_a1 = (
+                (k.twice_link_length_1 * x_minus_pivot_upper_x - product_in_rate_of_slope_1_by_a1_2) * rate_of_cos_a1
+                + (product_in_rate_of_slope_1_by_a1 - k.twice_link_length_1 * y_minus_pivot_upper_y) * rate_of_sin_a1
+                - sum_in_rate_of_slope_2_by_a1 * k.twice_link_length_1
+            )
+            rate_of_slope_1_by_x = twice_link_length_1_times_rate_of_sin_a1 + twice_velocity_x
+            rate_of_slope_2_by_x = product_in_rate_of_slope_2_by_x + sum_in_rate_of_slope_2_by_y_2
+        product_in_rate_of_slope_2_by_a1_3 = k.product_in_rate_of_slope_2_by_a1 * cos_a1
+        product_in_rate_of_slope_2_by_a1_4 = k.product_in_rate_of_slope_2_by_a1 * sin_a1
+        sum_in_rate_of_slope_2_by_a1_4 = (
+            k.quotient_in_rate_of_slope_2_by_y * sum_in_rate_of_slope_2_by_a1
+            + (product_in_rate_of_slope_2_by_a1_4 + k.product_in_slope_2_by_a1 * sum_in_slope_2_by_x) * rate_of_cos_a1
+            + (k.product_in_slope_2_by_a1 * sum_in_slope_2_by_y_3 - product_in_rate_of_slope_2_by_a1_3) * rate_of_sin_a1
+        )
+        sum_in_rate_of_slope_2_by_a1_3 = (
+            k.quotient_in_rate_of_slope_2_by_y * sum_in_rate_of_slope_2_by_a1_2
+            + (product_in_rate_of_slope_2_by_a1_4 + k.product_in_slope_2_by_a1 * sum_in_slope_2_by_y_4) * rate_of_cos_a1
+            + (k.product_in_slope_2_by_a1 * sum_in_slope_2_by_x_2 - product_in_rate_of_slope_2_by_a1_3) * rate_of_sin_a1
+        )
+        rate_of_slope_2_by_a1 = (
+            select(k.swap_xy, -sum_in_rate_of_slope_2_by_a1_3, -sum_in_rate_of_slope_2_by_a1_4)
+            + (-rate_of_cos_a2 * cos_a1 - rate_of_sin_a2 * sin_a1) * k.product_in_rate_of_slope_2_by_a1_2
+        )
+        rate_of_determinant = (
+            rate_of_slope_1_by_x * slope_2_by_y
+            + rate_of_slope_2_by_y * slope_1_by_x
+            - rate_of_slope_1_by_y * slope_2_by_x
+            - rate_of_slope_2_by_x * slope_1_by_y
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.machine_scale_squared_times_free_angle, rate_of_determinant, 0.0
+        )
+        shared_product = one_by_determinant * (slope_2_by_a2_times_speed_a2 + slope_2_by_a1 * speed_a1)
+        product_in_rate_of_slope_2_by_a2 = k.link_length_5_squared_times_2 * cos_a2
+        product_in_rate_of_slope_2_by_a2_2 = k.link_length_5_squared_times_2 * sin_a2
+        sum_in_rate_of_slope_2_by_a2_2 = (
+            k.quotient_in_rate_of_slope_2_by_y_2 * (velocity_y * cos_a2 + velocity_x * sin_a2)
+            + (sum_in_slope_2_by_y_3 * k.twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2) * rate_of_cos_a2
+            + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_x * k.twice_link_length_5) * rate_of_sin_a2
+        )
+        sum_in_rate_of_slope_2_by_a2 = (
+            k.quotient_in_rate_of_slope_2_by_y_2 * (velocity_x * cos_a2 + velocity_y * sin_a2)
+            + (sum_in_slope_2_by_x_2 * k.twice_link_length_5 - product_in_rate_of_slope_2_by_a2_2) * rate_of_cos_a2
+            + (product_in_rate_of_slope_2_by_a2 - sum_in_slope_2_by_y_4 * k.twice_link_length_5) * rate_of_sin_a2
+        )
+        rate_of_slope_2_by_a2 = select(
+            k.swap_xy, sum_in_rate_of_slope_2_by_a2, sum_in_rate_of_slope_2_by_a2_2
+        ) + k.product_in_rate_of_slope_2_by_a1_2 * (rate_of_cos_a1 * cos_a2 + rate_of_sin_a1 * sin_a2)
+        speed_a2_times_rate_of_slope_2_by_a2 = rate_of_slope_2_by_a2 * speed_a2
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.machine_scale_squared_times_free_angle)
+            & (height_square >= -k.link_length_2_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            one_by_determinant
+            * (
+                slope_1_by_y * speed_a2_times_rate_of_slope_2_by_a2
+                + (
+                    rate_of_slope_2_by_a1 * slope_1_by_y
+                    - rate_of_slope_1_by_a1 * slope_2_by_y
+                    - rate_of_slope_2_by_y * slope_1_by_a1
+                )
+                * speed_a1
+            )
+            + rate_of_slope_1_by_y * shared_product
+            - one_by_determinant * rate_of_determinant_divisor * velocity_x,
+            (
+                (
+                    rate_of_slope_1_by_a1 * slope_2_by_x
+                    + rate_of_slope_2_by_x * slope_1_by_a1
+                    - rate_of_slope_2_by_a1 * slope_1_by_x
+                )
+                * speed_a1
+                - slope_1_by_x * speed_a2_times_rate_of_slope_2_by_a2
+            )
+            * one_by_determinant
+            - rate_of_slope_1_by_x * shared_product
+            - one_by_determinant * rate_of_determinant_divisor * velocity_y,
+        ), status

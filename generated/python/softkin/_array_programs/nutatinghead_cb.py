@@ -31,7 +31,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 66
+    VALUES = 65
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
@@ -93,8 +93,6 @@ class ArrayPrograms(Programs):
         status = passed(position, rotation, signs, turns, reference)
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_b, ref_c, x, y, z), Status.BAD_INPUT)
-        # b: its effective length is too short
-        require(status, k.shared_size > 5e-10, Status.UNREACHABLE)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = select(-r33 < 0.0, -r13_squared_plus_r23_squared / (1.0 + absolute(r33)), r33 - 1.0)
@@ -285,4 +283,248 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0, 0.0, r13_at_b_turned),
             (0.0, 0.0, 0.0, 0.0, r23_at_b_turned),
             (0.0, 0.0, 0.0, 1.0, k.cos_nutation),
+        ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_b, axis_c, axis_x, axis_y, axis_z, speed_b, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * k.sin_nutation
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + k.fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * k.sin_nutation
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        r22_at_b_turned = cos_c * k.cos_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * k.cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = (
+            rate_of_sin_c * cos_b
+            + r22_at_b_turned * rate_of_sin_b
+            + rate_of_cos_b * sin_c
+            + rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * k.cos_nutation - rate_of_r22_at_b * k.sin_nutation
+        rate_of_y = rate_of_y_at_b + k.head_offset * rate_of_r21_at_b - k.pivot_length * rate_of_r23_at_b_turned_2
+        rate_of_r31_at_b = -rate_of_sin_b * k.sin_nutation
+        r13_at_b_turned = -sin_c * k.sin_nutation
+        rate_of_x_at_b = speed_x + k.fork_offset * rate_of_cos_c
+        rate_of_r13_at_b_turned = -rate_of_sin_c * k.sin_nutation
+        r12_at_b_turned = -k.cos_nutation * sin_c
+        rate_of_r12_at_b_turned = -rate_of_sin_c * k.cos_nutation
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            + r12_at_b_turned * rate_of_sin_b
+            + rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + r12_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * cos_c
+            - rate_of_cos_c * sin_b
+        )
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * k.cos_nutation - rate_of_r12_at_b * k.sin_nutation
+        rate_of_x = rate_of_x_at_b + k.head_offset * rate_of_r11_at_b - k.pivot_length * rate_of_r13_at_b_turned_2
+        joint_y = axis_y - k.offset_y
+        y_at_b = joint_y + k.fork_offset * sin_c
+        r21_at_b = cos_b * sin_c + r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r23_at_b_turned_2 = r23_at_b_turned * k.cos_nutation - r22_at_b * k.sin_nutation
+        y = y_at_b + k.head_offset * r21_at_b - k.pivot_length * r23_at_b_turned_2
+        joint_x = axis_x - k.offset_x
+        x_at_b = joint_x + k.fork_offset * cos_c
+        r11_at_b = cos_b * cos_c + r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b - cos_c * sin_b
+        r13_at_b_turned_2 = r13_at_b_turned * k.cos_nutation - r12_at_b * k.sin_nutation
+        x = x_at_b + k.head_offset * r11_at_b - k.pivot_length * r13_at_b_turned_2
+        r12_at_b_turned_2 = r12_at_b * k.cos_nutation + r13_at_b_turned * k.sin_nutation
+        r22_at_b_turned_2 = r22_at_b * k.cos_nutation + r23_at_b_turned * k.sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * k.sin_nutation
+        rate_of_r32_at_b_turned = rate_of_r32_at_b * k.cos_nutation
+        rate_of_r12_at_b_turned_2 = rate_of_r12_at_b * k.cos_nutation + rate_of_r13_at_b_turned * k.sin_nutation
+        rate_of_r22_at_b_turned_2 = rate_of_r22_at_b * k.cos_nutation + rate_of_r23_at_b_turned * k.sin_nutation
+        joint_z = axis_z - k.offset_z
+        r31_at_b = -sin_b * k.sin_nutation
+        r32_at_b = -cos_b * k.sin_nutation
+        r33_at_b_turned = k.cos_nutation_squared - r32_at_b * k.sin_nutation
+        z = joint_z + k.head_offset * r31_at_b - k.pivot_length * r33_at_b_turned
+        z_minus_joint_z = z - joint_z
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * k.cos_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * k.sin_nutation
+        rate_of_z = speed_z + k.head_offset * rate_of_r31_at_b - k.pivot_length * rate_of_r33_at_b_turned
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b
+            * (
+                rate_of_y_at_b * k.cos_nutation
+                + r23_at_b_turned * rate_of_z_minus_speed_z
+                + rate_of_r23_at_b_turned * z_minus_joint_z
+            )
+            + speed_c * speed_y
+            - rate_of_y * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_x * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                -rate_of_x_at_b * k.cos_nutation
+                - r13_at_b_turned * rate_of_z_minus_speed_z
+                - rate_of_r13_at_b_turned * z_minus_joint_z
+            )
+            * speed_b
+            - speed_c * speed_x,
+            (
+                r13_at_b_turned * (rate_of_y - rate_of_y_at_b)
+                + (rate_of_x_at_b - rate_of_x) * r23_at_b_turned
+                + rate_of_r13_at_b_turned * (y - y_at_b)
+                + (x_at_b - x) * rate_of_r23_at_b_turned
+            )
+            * speed_b,
+            rate_of_r31_at_b * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                r11_at_b * rate_of_r13_at_b_turned
+                + r13_at_b_turned * rate_of_r11_at_b
+                + r21_at_b * rate_of_r23_at_b_turned
+                + r23_at_b_turned * rate_of_r21_at_b
+            )
+            * speed_b,
+            rate_of_r32_at_b_turned * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                r12_at_b_turned_2 * rate_of_r13_at_b_turned
+                + r13_at_b_turned * rate_of_r12_at_b_turned_2
+                + r22_at_b_turned_2 * rate_of_r23_at_b_turned
+                + r23_at_b_turned * rate_of_r22_at_b_turned_2
+            )
+            * speed_b,
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_y, axis_z, axis_c, axis_b = axes
+        speed_x, speed_y, speed_z, speed_c, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_b, axis_c, axis_x, axis_y, axis_z, speed_b, speed_c, speed_x, speed_y, speed_z),
+            Status.BAD_INPUT,
+        )
+        c = DEGREE * (axis_c - k.offset_c)
+        cos_c = cos(c)
+        r23_at_b_turned = cos_c * k.sin_nutation
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_y_at_b = speed_y + k.fork_offset * rate_of_sin_c
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r23_at_b_turned = rate_of_cos_c * k.sin_nutation
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        r22_at_b_turned = cos_c * k.cos_nutation
+        rate_of_r22_at_b_turned = rate_of_cos_c * k.cos_nutation
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = (
+            rate_of_sin_c * cos_b
+            + r22_at_b_turned * rate_of_sin_b
+            + rate_of_cos_b * sin_c
+            + rate_of_r22_at_b_turned * sin_b
+        )
+        rate_of_r22_at_b = (
+            rate_of_r22_at_b_turned * cos_b
+            + r22_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * sin_c
+            - rate_of_sin_c * sin_b
+        )
+        rate_of_r23_at_b_turned_2 = rate_of_r23_at_b_turned * k.cos_nutation - rate_of_r22_at_b * k.sin_nutation
+        rate_of_y = rate_of_y_at_b + k.head_offset * rate_of_r21_at_b - k.pivot_length * rate_of_r23_at_b_turned_2
+        r13_at_b_turned = -sin_c * k.sin_nutation
+        rate_of_x_at_b = speed_x + k.fork_offset * rate_of_cos_c
+        rate_of_r13_at_b_turned = -rate_of_sin_c * k.sin_nutation
+        r12_at_b_turned = -k.cos_nutation * sin_c
+        rate_of_r12_at_b_turned = -rate_of_sin_c * k.cos_nutation
+        rate_of_r11_at_b = (
+            rate_of_cos_c * cos_b
+            + rate_of_cos_b * cos_c
+            + r12_at_b_turned * rate_of_sin_b
+            + rate_of_r12_at_b_turned * sin_b
+        )
+        rate_of_r12_at_b = (
+            rate_of_r12_at_b_turned * cos_b
+            + r12_at_b_turned * rate_of_cos_b
+            - rate_of_sin_b * cos_c
+            - rate_of_cos_c * sin_b
+        )
+        rate_of_r13_at_b_turned_2 = rate_of_r13_at_b_turned * k.cos_nutation - rate_of_r12_at_b * k.sin_nutation
+        rate_of_x = rate_of_x_at_b + k.head_offset * rate_of_r11_at_b - k.pivot_length * rate_of_r13_at_b_turned_2
+        joint_y = axis_y - k.offset_y
+        y_at_b = joint_y + k.fork_offset * sin_c
+        r21_at_b = cos_b * sin_c + r22_at_b_turned * sin_b
+        r22_at_b = r22_at_b_turned * cos_b - sin_b * sin_c
+        r23_at_b_turned_2 = r23_at_b_turned * k.cos_nutation - r22_at_b * k.sin_nutation
+        y = y_at_b + k.head_offset * r21_at_b - k.pivot_length * r23_at_b_turned_2
+        joint_x = axis_x - k.offset_x
+        x_at_b = joint_x + k.fork_offset * cos_c
+        r11_at_b = cos_b * cos_c + r12_at_b_turned * sin_b
+        r12_at_b = r12_at_b_turned * cos_b - cos_c * sin_b
+        r13_at_b_turned_2 = r13_at_b_turned * k.cos_nutation - r12_at_b * k.sin_nutation
+        x = x_at_b + k.head_offset * r11_at_b - k.pivot_length * r13_at_b_turned_2
+        joint_z = axis_z - k.offset_z
+        r31_at_b = -sin_b * k.sin_nutation
+        r32_at_b = -cos_b * k.sin_nutation
+        r33_at_b_turned = k.cos_nutation_squared - r32_at_b * k.sin_nutation
+        z = joint_z + k.head_offset * r31_at_b - k.pivot_length * r33_at_b_turned
+        z_minus_joint_z = z - joint_z
+        speed_c_plus_cos_nutation_times_speed_b = speed_c + speed_b * k.cos_nutation
+        rate_of_r31_at_b = -rate_of_sin_b * k.sin_nutation
+        rate_of_r32_at_b = -rate_of_cos_b * k.sin_nutation
+        rate_of_r33_at_b_turned = -rate_of_r32_at_b * k.sin_nutation
+        rate_of_z = speed_z + k.head_offset * rate_of_r31_at_b - k.pivot_length * rate_of_r33_at_b_turned
+        rate_of_z_minus_speed_z = rate_of_z - speed_z
+        return (
+            speed_b
+            * (
+                rate_of_y_at_b * k.cos_nutation
+                + r23_at_b_turned * rate_of_z_minus_speed_z
+                + rate_of_r23_at_b_turned * z_minus_joint_z
+            )
+            + speed_c * speed_y
+            - rate_of_y * speed_c_plus_cos_nutation_times_speed_b,
+            rate_of_x * speed_c_plus_cos_nutation_times_speed_b
+            + (
+                -rate_of_x_at_b * k.cos_nutation
+                - r13_at_b_turned * rate_of_z_minus_speed_z
+                - rate_of_r13_at_b_turned * z_minus_joint_z
+            )
+            * speed_b
+            - speed_c * speed_x,
+            (
+                r13_at_b_turned * (rate_of_y - rate_of_y_at_b)
+                + (rate_of_x_at_b - rate_of_x) * r23_at_b_turned
+                + rate_of_r13_at_b_turned * (y - y_at_b)
+                + (x_at_b - x) * rate_of_r23_at_b_turned
+            )
+            * speed_b,
+            rate_of_r13_at_b_turned * speed_b,
+            rate_of_r23_at_b_turned * speed_b,
+            0.0,
         ), status

@@ -224,3 +224,87 @@ class ArrayPrograms(Programs):
             ),
             (-shared_product, shared_product),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, speed_a1, speed_a2), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        pivot_1_x = a1 + k.tcp_offset_1  # rod 1: centre about which it swings
+        a2 = axis_a2 - k.offset_a2
+        pivot_2_x = a2 - k.tcp_offset_2  # rod 2: centre about which it swings
+        centre_1_to_2_x = pivot_2_x - pivot_1_x  # vector from centre 1 to centre 2
+        # squared length of the normal
+        normal_square = k.centre_1_to_2_y_squared + centre_1_to_2_x * centre_1_to_2_x
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        between_centres = root(normal_divisor)  # distance between the centres
+        one_by_normal_square = 1.0 / normal_divisor
+        # square of the height over the line of the centres
+        height_square = (
+            0.25
+            * (k.arm_length_1_minus_arm_length_2 + between_centres)
+            * (k.arm_length_1_minus_arm_length_2 - between_centres)
+            * (between_centres + k.machine_scale)
+            * (between_centres - k.machine_scale)
+            * one_by_normal_square
+        )
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        # foot of the perpendicular, as a fraction of this distance
+        foot_fraction = 0.5 * (normal_divisor + k.product_in_foot_fraction) * one_by_normal_square
+        foot_y = k.centre_1_to_2_y * foot_fraction
+        y = foot_y + k.rail_y_1 + centre_1_to_2_x * height_by_normal
+        slope_1_by_y = 2.0 * (y - k.rail_y_1)
+        foot_x = centre_1_to_2_x * foot_fraction  # foot of the perpendicular, seen from centre 1
+        x = foot_x + pivot_1_x - k.centre_1_to_2_y * height_by_normal
+        slope_2_by_x = 2.0 * (x - pivot_2_x)
+        slope_1_by_y_times_slope_2_by_x = slope_1_by_y * slope_2_by_x
+        slope_1_by_x = 2.0 * (x - pivot_1_x)
+        slope_2_by_y = 2.0 * (y - k.rail_y_2)
+        slope_1_by_x_times_slope_2_by_y = slope_1_by_x * slope_2_by_y
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = slope_1_by_x_times_slope_2_by_y - slope_1_by_y_times_slope_2_by_x
+        determinant_divisor = select(absolute(determinant) > k.machine_scale_squared_times_free_angle, determinant, 1.0)
+        one_by_determinant_divisor = 1.0 / determinant_divisor
+        product_in_velocity_y = one_by_determinant_divisor * (speed_a1 - speed_a2)
+        velocity_y = -product_in_velocity_y * slope_1_by_x * slope_2_by_x
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        velocity_x = one_by_determinant_divisor * (
+            slope_1_by_x_times_slope_2_by_y * speed_a1 - slope_1_by_y_times_slope_2_by_x * speed_a2
+        )
+        rate_of_slope_1_by_a1 = 2.0 * (speed_a1 - velocity_x)
+        rate_of_slope_2_by_x = 2.0 * (velocity_x - speed_a2)
+        rate_of_slope_2_by_x_times_slope_1_by_y = rate_of_slope_2_by_x * slope_1_by_y
+        rate_of_slope_1_by_a1_times_slope_2_by_y = rate_of_slope_1_by_a1 * slope_2_by_y
+        rate_of_determinant = (
+            rate_of_slope_1_by_y * (slope_1_by_x - slope_2_by_x)
+            - rate_of_slope_1_by_a1_times_slope_2_by_y
+            - rate_of_slope_2_by_x_times_slope_1_by_y
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.machine_scale_squared_times_free_angle, rate_of_determinant, 0.0
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.machine_scale_squared_times_free_angle)
+            & (height_square >= -k.arm_length_1_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            one_by_determinant_divisor
+            * (
+                (rate_of_slope_1_by_y * slope_1_by_x - rate_of_slope_1_by_a1_times_slope_2_by_y) * speed_a1
+                + (-rate_of_slope_2_by_x_times_slope_1_by_y - rate_of_slope_1_by_y * slope_2_by_x) * speed_a2
+            )
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_x,
+            product_in_velocity_y * (rate_of_slope_1_by_a1 * slope_2_by_x - rate_of_slope_2_by_x * slope_1_by_x)
+            - one_by_determinant_divisor * rate_of_determinant_divisor * velocity_y,
+        ), status

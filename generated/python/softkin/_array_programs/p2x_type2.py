@@ -116,3 +116,38 @@ class ArrayPrograms(Programs):
         # nothing controls the plate
         require(status, absolute(slope_2_by_y) > k.machine_scale_times_free_angle, Status.IMPOSSIBLE)
         return ((0.5, 0.5), (pivot_1_x_by_slope_2_by_y, -pivot_1_x_by_slope_2_by_y)), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, speed_a1, speed_a2), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        pivot_1_x = -0.5 * (a1 + k.tcp_link_distance - a2)  # rod 1: centre about which it swings
+        radicand_y = (k.arm_length + pivot_1_x) * (k.arm_length - pivot_1_x)  # quadratic equation for y: rod 1
+        y = root(radicand_y) * k.assembly_sign
+        slope_2_by_y = 2.0 * y
+        determinant_divisor = select(absolute(slope_2_by_y) > k.machine_scale_times_free_angle, slope_2_by_y, 1.0)
+        speed_a1_minus_speed_a2 = speed_a1 - speed_a2
+        rate_of_slope_2_by_a1 = 0.5 * speed_a1_minus_speed_a2
+        speed_a1_minus_speed_a2_by_slope_2_by_y = speed_a1_minus_speed_a2 / determinant_divisor
+        velocity_y = pivot_1_x * speed_a1_minus_speed_a2_by_slope_2_by_y
+        rate_of_slope_2_by_y = 2.0 * velocity_y
+        rate_of_determinant_divisor = select(
+            absolute(slope_2_by_y) > k.machine_scale_times_free_angle, rate_of_slope_2_by_y, 0.0
+        )
+        # the mirror that the machine does not have
+        require(status, pivot_1_x >= -k.machine_scale_times_rounding, Status.IMPOSSIBLE)
+        # rod 1 cannot reach
+        require(status, radicand_y >= -k.arm_length_squared_times_rounding, Status.IMPOSSIBLE)
+        # nothing controls the plate
+        require(status, absolute(slope_2_by_y) > k.machine_scale_times_free_angle, Status.IMPOSSIBLE)
+        return (
+            0.0,
+            -rate_of_slope_2_by_a1 * speed_a1_minus_speed_a2_by_slope_2_by_y
+            - rate_of_determinant_divisor * velocity_y / determinant_divisor,
+        ), status

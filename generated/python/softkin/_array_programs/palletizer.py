@@ -596,6 +596,87 @@ class ArrayPrograms(Programs):
             (1.0, 0.0, 0.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, speed_a1, speed_a2, speed_a3, speed_a4),
+            Status.BAD_INPUT,
+        )
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_a1 = cos(a1)
+        rate_of_sin_a1 = speed_a1 * cos_a1
+        sin_a1 = sin(a1)
+        rate_of_y_at_a2 = rate_of_sin_a1 * k.shoulder_offset
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        cos_a2 = cos(a2)
+        rate_of_sin_a2 = speed_a2 * cos_a2
+        rate_of_r23_at_a2 = rate_of_sin_a1 * sin_a2 + rate_of_sin_a2 * sin_a1
+        rate_of_y_at_a2_a3 = rate_of_y_at_a2 + k.link_length_1 * rate_of_r23_at_a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        cos_a3 = cos(a3)
+        sin_a3 = sin(a3)
+        rate_of_cos_a3 = -speed_a3 * sin_a3
+        rate_of_r21_at_a3 = rate_of_sin_a1 * cos_a3 + rate_of_cos_a3 * sin_a1
+        rate_of_y_at_a3 = rate_of_y_at_a2_a3 + k.link_length_2 * rate_of_r21_at_a3
+        rate_of_y_at_a4 = rate_of_y_at_a3 + rate_of_sin_a1 * k.wrist_offset_x
+        rate_of_cos_a1 = -speed_a1 * sin_a1
+        rate_of_cos_a2 = -speed_a2 * sin_a2
+        rate_of_z_at_a2_a3 = k.link_length_1 * rate_of_cos_a2
+        rate_of_x_at_a2 = rate_of_cos_a1 * k.shoulder_offset
+        rate_of_r13_at_a2 = rate_of_sin_a2 * cos_a1 + rate_of_cos_a1 * sin_a2
+        rate_of_x_at_a2_a3 = rate_of_x_at_a2 + k.link_length_1 * rate_of_r13_at_a2
+        rate_of_r11_at_a3 = rate_of_cos_a3 * cos_a1 + rate_of_cos_a1 * cos_a3
+        rate_of_x_at_a3 = rate_of_x_at_a2_a3 + k.link_length_2 * rate_of_r11_at_a3
+        rate_of_x_at_a4 = rate_of_x_at_a3 + rate_of_cos_a1 * k.wrist_offset_x
+        z_at_a2_a3 = k.base_height + k.link_length_1 * cos_a2
+        z_at_a3 = z_at_a2_a3 - k.link_length_2 * sin_a3
+        shared_sum = (k.base_height - z_at_a2_a3) * speed_a2 + speed_a3 * (z_at_a2_a3 - z_at_a3)
+        speed_a2_minus_speed_a3 = speed_a2 - speed_a3
+        speed_a2_minus_speed_a3_times_cos_a1 = speed_a2_minus_speed_a3 * cos_a1
+        speed_a2_minus_speed_a3_times_sin_a1 = speed_a2_minus_speed_a3 * sin_a1
+        rate_of_sin_a3 = speed_a3 * cos_a3
+        rate_of_z_at_a3 = rate_of_z_at_a2_a3 - k.link_length_2 * rate_of_sin_a3
+        speed_a3_times_rate_of_z_at_a3 = rate_of_z_at_a3 * speed_a3
+        y_at_a2 = k.shoulder_offset * sin_a1
+        r23_at_a2 = sin_a1 * sin_a2
+        y_at_a2_a3 = y_at_a2 + k.link_length_1 * r23_at_a2
+        r21_at_a3 = cos_a3 * sin_a1
+        y_at_a3 = y_at_a2_a3 + k.link_length_2 * r21_at_a3
+        x_at_a2 = k.shoulder_offset * cos_a1
+        r13_at_a2 = cos_a1 * sin_a2
+        x_at_a2_a3 = x_at_a2 + k.link_length_1 * r13_at_a2
+        r11_at_a3 = cos_a1 * cos_a3
+        x_at_a3 = x_at_a2_a3 + k.link_length_2 * r11_at_a3
+        shared_sum_2 = (
+            (rate_of_x_at_a2 * speed_a2 - rate_of_x_at_a3 * speed_a3) * cos_a1
+            + rate_of_cos_a1 * (speed_a2 * (x_at_a2 - x_at_a2_a3) + speed_a3 * (x_at_a2_a3 - x_at_a3))
+            + (rate_of_y_at_a2 * speed_a2 - rate_of_y_at_a3 * speed_a3) * sin_a1
+            - rate_of_sin_a1 * ((y_at_a2_a3 - y_at_a2) * speed_a2 + (y_at_a3 - y_at_a2_a3) * speed_a3)
+        )
+        return (
+            speed_a3_times_rate_of_z_at_a3 * cos_a1
+            + rate_of_z_at_a2_a3 * speed_a2_minus_speed_a3_times_cos_a1
+            - rate_of_cos_a1 * shared_sum
+            - rate_of_y_at_a4 * speed_a1,
+            rate_of_x_at_a4 * speed_a1
+            + rate_of_z_at_a2_a3 * speed_a2_minus_speed_a3_times_sin_a1
+            + speed_a3_times_rate_of_z_at_a3 * sin_a1
+            - rate_of_sin_a1 * shared_sum,
+            shared_sum_2
+            - rate_of_x_at_a2_a3 * speed_a2_minus_speed_a3_times_cos_a1
+            - rate_of_y_at_a2_a3 * speed_a2_minus_speed_a3_times_sin_a1,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

@@ -154,3 +154,24 @@ class ArrayPrograms(Programs):
             (-k.link_length_1 * sin_a1, -k.link_length_2 * sin_a2),
             (k.link_length_1 * cos_a1, k.link_length_2 * cos_a2),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2 = axes
+        speed_a1, speed_a2 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, speed_a1, speed_a2), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        rate_of_sin_a2 = cos(a2) * speed_a2
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a2 = -sin(a2) * speed_a2
+        link_length_2_times_speed_a2 = k.link_length_2 * speed_a2
+        link_length_1_times_speed_a1 = k.link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1 - link_length_2_times_speed_a2 * rate_of_sin_a2,
+            link_length_1_times_speed_a1 * rate_of_cos_a1 + link_length_2_times_speed_a2 * rate_of_cos_a2,
+        ), status

@@ -228,12 +228,12 @@ class ArrayPrograms(StartedPrograms):
         effective_a1 = sqrt(span_1_x * span_1_x + span_1_y * span_1_y)  # effective length of the arm that a1 turns
         divisor_a1 = select(effective_a1 > k.arm_length_1_times_shortest_link, effective_a1, 1.0)
         # law of cosines for a1 (rod 1): 1 - cosine, times a scale
-        one_less_cos_a1 = (divisor_a1 - k.arm_length_1_plus_rod_length_1) * (
-            k.arm_length_1_minus_rod_length_1 - divisor_a1
+        one_less_cos_a1 = (k.arm_length_1_plus_rod_length_1 - divisor_a1) * (
+            divisor_a1 + k.rod_length_1_minus_arm_length_1
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a1 = (k.arm_length_1_minus_rod_length_1 + divisor_a1) * (
-            k.arm_length_1_plus_rod_length_1 + divisor_a1
+        one_plus_cos_a1 = (k.arm_length_1_plus_rod_length_1 + divisor_a1) * (
+            divisor_a1 - k.rod_length_1_minus_arm_length_1
         )
         sum_a1 = one_less_cos_a1 + one_plus_cos_a1  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a1 = select(sum_a1 > 0.0, sum_a1, 1.0)
@@ -245,12 +245,12 @@ class ArrayPrograms(StartedPrograms):
         effective_a2 = sqrt(span_2_x * span_2_x + span_2_y * span_2_y)  # effective length of the arm that a2 turns
         divisor_a2 = select(effective_a2 > k.arm_length_2_times_shortest_link, effective_a2, 1.0)
         # law of cosines for a2 (rod 2): 1 - cosine, times a scale
-        one_less_cos_a2 = (divisor_a2 - k.arm_length_2_plus_rod_length_2) * (
-            k.arm_length_2_minus_rod_length_2 - divisor_a2
+        one_less_cos_a2 = (k.arm_length_2_plus_rod_length_2 - divisor_a2) * (
+            divisor_a2 + k.rod_length_2_minus_arm_length_2
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a2 = (k.arm_length_2_minus_rod_length_2 + divisor_a2) * (
-            k.arm_length_2_plus_rod_length_2 + divisor_a2
+        one_plus_cos_a2 = (k.arm_length_2_plus_rod_length_2 + divisor_a2) * (
+            divisor_a2 - k.rod_length_2_minus_arm_length_2
         )
         sum_a2 = one_less_cos_a2 + one_plus_cos_a2  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a2 = select(sum_a2 > 0.0, sum_a2, 1.0)
@@ -262,12 +262,12 @@ class ArrayPrograms(StartedPrograms):
         effective_a3 = sqrt(span_3_x * span_3_x + span_3_y * span_3_y)  # effective length of the arm that a3 turns
         divisor_a3 = select(effective_a3 > k.arm_length_3_times_shortest_link, effective_a3, 1.0)
         # law of cosines for a3 (rod 3): 1 - cosine, times a scale
-        one_less_cos_a3 = (divisor_a3 - k.arm_length_3_plus_rod_length_3) * (
-            k.arm_length_3_minus_rod_length_3 - divisor_a3
+        one_less_cos_a3 = (k.arm_length_3_plus_rod_length_3 - divisor_a3) * (
+            divisor_a3 + k.rod_length_3_minus_arm_length_3
         )
         # 1 + cosine, times the scale
-        one_plus_cos_a3 = (k.arm_length_3_minus_rod_length_3 + divisor_a3) * (
-            k.arm_length_3_plus_rod_length_3 + divisor_a3
+        one_plus_cos_a3 = (k.arm_length_3_plus_rod_length_3 + divisor_a3) * (
+            divisor_a3 - k.rod_length_3_minus_arm_length_3
         )
         sum_a3 = one_less_cos_a3 + one_plus_cos_a3  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_a3 = select(sum_a3 > 0.0, sum_a3, 1.0)
@@ -506,6 +506,196 @@ class ArrayPrograms(StartedPrograms):
                 column_2_wz * k.one_by_platform_radius,
                 column_3_wz * k.one_by_platform_radius,
             ),
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, speed_a1, speed_a2, speed_a3, k.start_x, k.start_y),
+            Status.BAD_INPUT,
+        )
+        start_along = k.start_r11 + k.start_r22  # nearest rotation about Z
+        start_across = k.start_r21 - k.start_r12
+        start_length = sqrt(start_across * start_across + start_along * start_along)
+        start_divisor = select(start_length > 2e-12, start_length, 1.0)
+        start_cos_heading = start_along / start_divisor
+        start_sin_heading = start_across / start_divisor
+        # the tool points exactly the opposite way
+        require(status, start_length > 2e-12, Status.BAD_INPUT)
+        # pose of the platform, by Newton's method from the start
+        found = self.find_platform(
+            (axis_a1, axis_a2, axis_a3, start_cos_heading, start_sin_heading, k.start_x, k.start_y), status
+        )
+        found_x, found_y, found_cos_heading, found_sin_heading, determinant, *_ = found
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_a2 = sin(a2)
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        sin_a3 = sin(a3)
+        cos_a1 = cos(a1)
+        cos_a2 = cos(a2)
+        cos_a3 = cos(a3)
+        arm_1_x = found_cos_heading * k.platform_1_x - found_sin_heading * k.platform_1_y
+        # leg 1: vector from its joint on the base to its joint on the platform
+        rod_1_x = arm_1_x + found_x - k.base_1_x - k.arm_length_1 * cos_a1
+        along_1_x = k.one_by_divisor_1_2 * rod_1_x
+        arm_1_y = found_cos_heading * k.platform_1_y + found_sin_heading * k.platform_1_x
+        rod_1_y = arm_1_y + found_y - k.base_1_y - k.arm_length_1 * sin_a1
+        along_1_y = k.one_by_divisor_1_2 * rod_1_y
+        moment_1_z = (along_1_y * arm_1_x - along_1_x * arm_1_y) * k.one_by_platform_radius
+        arm_2_x = found_cos_heading * k.platform_2_x - found_sin_heading * k.platform_2_y
+        # leg 2: vector from its joint on the base to its joint on the platform
+        rod_2_x = arm_2_x + found_x - k.base_2_x - k.arm_length_2 * cos_a2
+        along_2_x = k.one_by_divisor_2_2 * rod_2_x
+        arm_2_y = found_cos_heading * k.platform_2_y + found_sin_heading * k.platform_2_x
+        rod_2_y = arm_2_y + found_y - k.base_2_y - k.arm_length_2 * sin_a2
+        along_2_y = k.one_by_divisor_2_2 * rod_2_y
+        moment_2_z = (along_2_y * arm_2_x - along_2_x * arm_2_y) * k.one_by_platform_radius
+        arm_3_x = found_cos_heading * k.platform_3_x - found_sin_heading * k.platform_3_y
+        # leg 3: vector from its joint on the base to its joint on the platform
+        rod_3_x = arm_3_x + found_x - k.base_3_x - k.arm_length_3 * cos_a3
+        along_3_x = k.one_by_divisor_3_2 * rod_3_x
+        arm_3_y = found_cos_heading * k.platform_3_y + found_sin_heading * k.platform_3_x
+        rod_3_y = arm_3_y + found_y - k.base_3_y - k.arm_length_3 * sin_a3
+        along_3_y = k.one_by_divisor_3_2 * rod_3_y
+        moment_3_z = (along_3_y * arm_3_x - along_3_x * arm_3_y) * k.one_by_platform_radius
+        # twist of the platform per velocity of each axis
+        _, column_1_vx, column_1_vy, column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                (-(along_1_x * sin_a1 - along_1_y * cos_a1) * k.arm_length_1 * speed_a1,),
+                (-(along_2_x * sin_a2 - along_2_y * cos_a2) * k.arm_length_2 * speed_a2,),
+                (-(along_3_x * sin_a3 - along_3_y * cos_a3) * k.arm_length_3 * speed_a3,),
+            ),
+        )
+        rate_of_cos_a1_2 = -speed_a1 * sin_a1
+        rate_of_arm_1_x = (
+            -found_cos_heading * k.platform_1_y_by_platform_radius
+            - found_sin_heading * k.platform_1_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_1_x = column_1_vx + rate_of_arm_1_x - k.arm_length_1 * rate_of_cos_a1_2
+        rate_of_along_1_x = k.one_by_divisor_1_2 * rate_of_rod_1_x
+        rate_of_sin_a1_2 = speed_a1 * cos_a1
+        rate_of_arm_1_y = column_1_wz * (
+            found_cos_heading * k.platform_1_x_by_platform_radius
+            - found_sin_heading * k.platform_1_y_by_platform_radius
+        )
+        rate_of_rod_1_y = column_1_vy + rate_of_arm_1_y - k.arm_length_1 * rate_of_sin_a1_2
+        rate_of_along_1_y = k.one_by_divisor_1_2 * rate_of_rod_1_y
+        rate_of_moment_1_z = (
+            along_1_y * rate_of_arm_1_x
+            + arm_1_x * rate_of_along_1_y
+            - along_1_x * rate_of_arm_1_y
+            - arm_1_y * rate_of_along_1_x
+        ) * k.one_by_platform_radius
+        rate_of_cos_a2_2 = -speed_a2 * sin_a2
+        rate_of_arm_2_x = (
+            -found_cos_heading * k.platform_2_y_by_platform_radius
+            - found_sin_heading * k.platform_2_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_2_x = column_1_vx + rate_of_arm_2_x - k.arm_length_2 * rate_of_cos_a2_2
+        rate_of_along_2_x = k.one_by_divisor_2_2 * rate_of_rod_2_x
+        rate_of_sin_a2_2 = speed_a2 * cos_a2
+        rate_of_arm_2_y = column_1_wz * (
+            found_cos_heading * k.platform_2_x_by_platform_radius
+            - found_sin_heading * k.platform_2_y_by_platform_radius
+        )
+        rate_of_rod_2_y = column_1_vy + rate_of_arm_2_y - k.arm_length_2 * rate_of_sin_a2_2
+        rate_of_along_2_y = k.one_by_divisor_2_2 * rate_of_rod_2_y
+        rate_of_moment_2_z = (
+            along_2_y * rate_of_arm_2_x
+            + arm_2_x * rate_of_along_2_y
+            - along_2_x * rate_of_arm_2_y
+            - arm_2_y * rate_of_along_2_x
+        ) * k.one_by_platform_radius
+        rate_of_cos_a3_2 = -speed_a3 * sin_a3
+        rate_of_arm_3_x = (
+            -found_cos_heading * k.platform_3_y_by_platform_radius
+            - found_sin_heading * k.platform_3_x_by_platform_radius
+        ) * column_1_wz
+        rate_of_rod_3_x = column_1_vx + rate_of_arm_3_x - k.arm_length_3 * rate_of_cos_a3_2
+        rate_of_along_3_x = k.one_by_divisor_3_2 * rate_of_rod_3_x
+        rate_of_sin_a3_2 = speed_a3 * cos_a3
+        rate_of_arm_3_y = column_1_wz * (
+            found_cos_heading * k.platform_3_x_by_platform_radius
+            - found_sin_heading * k.platform_3_y_by_platform_radius
+        )
+        rate_of_rod_3_y = column_1_vy + rate_of_arm_3_y - k.arm_length_3 * rate_of_sin_a3_2
+        rate_of_along_3_y = k.one_by_divisor_3_2 * rate_of_rod_3_y
+        rate_of_moment_3_z = (
+            along_3_y * rate_of_arm_3_x
+            + arm_3_x * rate_of_along_3_y
+            - along_3_x * rate_of_arm_3_y
+            - arm_3_y * rate_of_along_3_x
+        ) * k.one_by_platform_radius
+        _, rate_of_column_1_vx, rate_of_column_1_vy, rate_of_column_1_wz = solve(
+            (
+                (along_1_x, along_1_y, moment_1_z),
+                (along_2_x, along_2_y, moment_2_z),
+                (along_3_x, along_3_y, moment_3_z),
+            ),
+            (
+                (
+                    (
+                        along_1_y * rate_of_cos_a1_2
+                        + rate_of_along_1_y * cos_a1
+                        - along_1_x * rate_of_sin_a1_2
+                        - rate_of_along_1_x * sin_a1
+                    )
+                    * k.arm_length_1
+                    * speed_a1
+                    - column_1_vx * rate_of_along_1_x
+                    - column_1_vy * rate_of_along_1_y
+                    - column_1_wz * rate_of_moment_1_z,
+                ),
+                (
+                    (
+                        along_2_y * rate_of_cos_a2_2
+                        + rate_of_along_2_y * cos_a2
+                        - along_2_x * rate_of_sin_a2_2
+                        - rate_of_along_2_x * sin_a2
+                    )
+                    * k.arm_length_2
+                    * speed_a2
+                    - column_1_vx * rate_of_along_2_x
+                    - column_1_vy * rate_of_along_2_y
+                    - column_1_wz * rate_of_moment_2_z,
+                ),
+                (
+                    (
+                        along_3_y * rate_of_cos_a3_2
+                        + rate_of_along_3_y * cos_a3
+                        - along_3_x * rate_of_sin_a3_2
+                        - rate_of_along_3_x * sin_a3
+                    )
+                    * k.arm_length_3
+                    * speed_a3
+                    - column_1_vx * rate_of_along_3_x
+                    - column_1_vy * rate_of_along_3_y
+                    - column_1_wz * rate_of_moment_3_z,
+                ),
+            ),
+        )
+        # nothing controls the plate
+        require(status, absolute(determinant) > 2e-12, Status.IMPOSSIBLE)
+        return (
+            rate_of_column_1_vx,
+            rate_of_column_1_vy,
+            0.0,
+            0.0,
+            0.0,
+            k.one_by_platform_radius * rate_of_column_1_wz,
         ), status
 
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:

@@ -136,3 +136,28 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0),
         ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_c, axis_r, axis_z = axes
+        speed_c, speed_r, speed_z = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, axis_r, axis_z, speed_c, speed_r, speed_z), Status.BAD_INPUT)
+        r = axis_r - k.offset_r
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_cos_c = -speed_c * sin_c
+        # R where the machine has no pose
+        require(status, (r >= -1e-9) & (r <= 1000000001.0), Status.IMPOSSIBLE)
+        return (
+            rate_of_cos_c * speed_r + (-r * rate_of_sin_c - speed_r * sin_c) * speed_c,
+            rate_of_sin_c * speed_r + speed_c * (speed_r * cos_c + r * rate_of_cos_c),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status

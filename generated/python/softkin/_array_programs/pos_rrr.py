@@ -878,3 +878,82 @@ class ArrayPrograms(Programs):
             (0.0, -cos_q1, -cos_q1),
             (1.0, 0.0, 0.0),
         ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, speed_a1, speed_a2, speed_a3), Status.BAD_INPUT)
+        q1 = DEGREE * (axis_a1 - k.offset_a1)
+        cos_q1 = cos(q1)
+        sin_q1 = sin(q1)
+        rate_of_cos_q1 = -speed_a1 * sin_q1
+        rate_of_sin_q1 = speed_a1 * cos_q1
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_y_at_q2 = k.a1 * rate_of_sin_q1
+        q2 = DEGREE * (axis_a2 - k.offset_a2)
+        sin_q2 = sin(q2)
+        cos_q2 = cos(q2)
+        rate_of_sin_q2 = speed_a2 * cos_q2
+        rate_of_r23_at_q2 = -rate_of_sin_q1 * sin_q2 - rate_of_sin_q2 * sin_q1
+        rate_of_y_at_q3 = rate_of_y_at_q2 + k.a2 * rate_of_r23_at_q2
+        q3 = DEGREE * (axis_a3 - k.offset_a3)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        sin_q23 = sin(q2_plus_q3)
+        rate_of_cos_q23 = -speed_a2_plus_speed_a3 * sin_q23
+        rate_of_r21_at_q23 = rate_of_sin_q1 * cos_q23 + rate_of_cos_q23 * sin_q1
+        rate_of_sin_q23 = speed_a2_plus_speed_a3 * cos_q23
+        rate_of_r23_at_q23 = -rate_of_sin_q1 * sin_q23 - rate_of_sin_q23 * sin_q1
+        rate_of_y = rate_of_y_at_q3 + k.a3 * rate_of_r23_at_q23 + k.d4 * rate_of_r21_at_q23 - k.d3 * rate_of_cos_q1
+        rate_of_cos_q2 = -speed_a2 * sin_q2
+        rate_of_z_at_q3 = k.a2 * rate_of_cos_q2
+        rate_of_z = rate_of_z_at_q3 + k.a3 * rate_of_cos_q23 + k.d4 * rate_of_sin_q23
+        rate_of_x_at_q2 = k.a1 * rate_of_cos_q1
+        rate_of_r13_at_q2 = -rate_of_sin_q2 * cos_q1 - rate_of_cos_q1 * sin_q2
+        rate_of_x_at_q3 = rate_of_x_at_q2 + k.a2 * rate_of_r13_at_q2
+        rate_of_r11_at_q23 = rate_of_cos_q23 * cos_q1 + rate_of_cos_q1 * cos_q23
+        rate_of_r13_at_q23 = -rate_of_sin_q23 * cos_q1 - rate_of_cos_q1 * sin_q23
+        rate_of_x = rate_of_x_at_q3 + k.a3 * rate_of_r13_at_q23 + k.d3 * rate_of_sin_q1 + k.d4 * rate_of_r11_at_q23
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z = z_at_q3 + k.a3 * cos_q23 + k.d4 * sin_q23
+        shared_sum = (k.d1 - z) * speed_a2 + (z_at_q3 - z) * speed_a3
+        speed_a2_plus_speed_a3_times_cos_q1 = speed_a2_plus_speed_a3 * cos_q1
+        speed_a2_plus_speed_a3_times_sin_q1 = speed_a2_plus_speed_a3 * sin_q1
+        speed_a3_times_rate_of_z_at_q3 = rate_of_z_at_q3 * speed_a3
+        y_at_q2 = k.a1 * sin_q1
+        r23_at_q2 = -sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = -sin_q1 * sin_q23
+        y = y_at_q3 + k.a3 * r23_at_q23 + k.d4 * r21_at_q23 - k.d3 * cos_q1
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = -cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        r11_at_q23 = cos_q1 * cos_q23
+        r13_at_q23 = -cos_q1 * sin_q23
+        x = x_at_q3 + k.a3 * r13_at_q23 + k.d3 * sin_q1 + k.d4 * r11_at_q23
+        shared_sum_2 = (
+            (rate_of_x_at_q2 * speed_a2 + rate_of_x_at_q3 * speed_a3) * cos_q1
+            + rate_of_cos_q1 * ((x_at_q2 - x) * speed_a2 + (x_at_q3 - x) * speed_a3)
+            + (rate_of_y_at_q2 * speed_a2 + rate_of_y_at_q3 * speed_a3) * sin_q1
+            - rate_of_sin_q1 * (speed_a2 * (y - y_at_q2) + speed_a3 * (y - y_at_q3))
+            - rate_of_x * speed_a2_plus_speed_a3_times_cos_q1
+        )
+        return (
+            speed_a3_times_rate_of_z_at_q3 * cos_q1
+            + rate_of_cos_q1 * shared_sum
+            - rate_of_y * speed_a1
+            - rate_of_z * speed_a2_plus_speed_a3_times_cos_q1,
+            rate_of_sin_q1 * shared_sum
+            + rate_of_x * speed_a1
+            + speed_a3_times_rate_of_z_at_q3 * sin_q1
+            - rate_of_z * speed_a2_plus_speed_a3_times_sin_q1,
+            rate_of_y * speed_a2_plus_speed_a3_times_sin_q1 - shared_sum_2,
+            rate_of_sin_q1 * speed_a2_plus_speed_a3,
+            -rate_of_cos_q1 * speed_a2_plus_speed_a3,
+            0.0,
+        ), status

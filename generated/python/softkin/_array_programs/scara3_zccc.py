@@ -188,6 +188,47 @@ class ArrayPrograms(Programs):
             (0.0, 1.0, 1.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, speed_a1, speed_a2, speed_a3, speed_a4),
+            Status.BAD_INPUT,
+        )
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        rate_of_sin_a2 = cos(a2) * speed_a2
+        a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a2_plus_a3 = a2 + a3
+        speed_a2_plus_speed_a3 = speed_a2 + speed_a3
+        rate_of_sin_a23 = cos(a2_plus_a3) * speed_a2_plus_speed_a3
+        a4 = DEGREE * (axis_a4 - k.offset_a4)
+        a2_plus_a3_plus_a4 = a2_plus_a3 + a4
+        speed_a2_plus_speed_a3_plus_speed_a4 = speed_a2_plus_speed_a3 + speed_a4
+        rate_of_sin_a234 = cos(a2_plus_a3_plus_a4) * speed_a2_plus_speed_a3_plus_speed_a4
+        rate_of_cos_a2 = -sin(a2) * speed_a2
+        rate_of_cos_a23 = -sin(a2_plus_a3) * speed_a2_plus_speed_a3
+        rate_of_cos_a234 = -sin(a2_plus_a3_plus_a4) * speed_a2_plus_speed_a3_plus_speed_a4
+        shared_product = k.link_length_2 * speed_a2_plus_speed_a3
+        link_length_1_times_speed_a2 = k.link_length_1 * speed_a2
+        shared_product_2 = k.link_length_3 * speed_a2_plus_speed_a3_plus_speed_a4
+        return (
+            -link_length_1_times_speed_a2 * rate_of_sin_a2
+            - rate_of_sin_a23 * shared_product
+            - rate_of_sin_a234 * shared_product_2,
+            link_length_1_times_speed_a2 * rate_of_cos_a2
+            + rate_of_cos_a23 * shared_product
+            + rate_of_cos_a234 * shared_product_2,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

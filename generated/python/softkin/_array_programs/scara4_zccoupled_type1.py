@@ -177,6 +177,37 @@ class ArrayPrograms(Programs):
             (1.0, 1.0, 0.0, 1.0),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        speed_a1, speed_a2, speed_a3, speed_a4 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(
+            status,
+            reasonable(axis_a1, axis_a2, axis_a3, axis_a4, speed_a1, speed_a2, speed_a3, speed_a4),
+            Status.BAD_INPUT,
+        )
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a1_plus_a2 = a1 + a2
+        speed_a1_plus_speed_a2 = speed_a1 + speed_a2
+        rate_of_sin_a12 = cos(a1_plus_a2) * speed_a1_plus_speed_a2
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -sin(a1_plus_a2) * speed_a1_plus_speed_a2
+        shared_product = k.link_length_2 * speed_a1_plus_speed_a2
+        link_length_1_times_speed_a1 = k.link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1 - rate_of_sin_a12 * shared_product,
+            link_length_1_times_speed_a1 * rate_of_cos_a1 + rate_of_cos_a12 * shared_product,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status
+
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:
         """The nearest rotation that the flange can have."""
         (r11, r12, _), (r21, r22, _), _ = rotation

@@ -222,12 +222,12 @@ class ArrayPrograms(Programs):
         cos_a123 = cos(a1_plus_a2_plus_a3)
         return (
             (
-                -k.link_length_1 * sin_a1 - k.shared_sum * sin_a123 - k.shared_sum_2 * sin_a12,
+                -k.link_length_1 * sin_a1 - k.shared_sum * sin_a12 - k.shared_sum_4 * sin_a123,
                 -k.link_length_2 * sin_a12 - k.shared_sum_3 * sin_a123,
                 -k.link_length_3 * sin_a123,
             ),
             (
-                k.link_length_1 * cos_a1 + k.shared_sum_2 * cos_a12 + k.shared_sum * cos_a123,
+                k.link_length_1 * cos_a1 + k.shared_sum * cos_a12 + k.shared_sum_4 * cos_a123,
                 k.link_length_2 * cos_a12 + k.shared_sum_3 * cos_a123,
                 k.link_length_3 * cos_a123,
             ),
@@ -235,6 +235,47 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             (k.coupling_12_plus_coupling_13_plus_one, k.coupling_23_plus_one, 1.0),
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, speed_a1, speed_a2, speed_a3), Status.BAD_INPUT)
+        a1 = DEGREE * (axis_a1 - k.offset_a1)
+        rate_of_sin_a1 = cos(a1) * speed_a1
+        motor_a2 = DEGREE * (axis_a2 - k.offset_a2)
+        a2 = motor_a2 + a1 * k.coupling_12
+        a1_plus_a2 = a1 + a2
+        rate_of_a2 = speed_a2 + k.coupling_12 * speed_a1
+        rate_of_a2_plus_speed_a1 = rate_of_a2 + speed_a1
+        rate_of_sin_a12 = cos(a1_plus_a2) * rate_of_a2_plus_speed_a1
+        motor_a3 = DEGREE * (axis_a3 - k.offset_a3)
+        a3 = motor_a3 + a1 * k.coupling_13 + k.coupling_23 * motor_a2
+        a1_plus_a2_plus_a3 = a1_plus_a2 + a3
+        rate_of_a3 = speed_a3 + k.coupling_13 * speed_a1 + k.coupling_23 * speed_a2
+        rate_of_a2_plus_speed_a1_plus_rate_of_a3 = rate_of_a2_plus_speed_a1 + rate_of_a3
+        rate_of_sin_a123 = cos(a1_plus_a2_plus_a3) * rate_of_a2_plus_speed_a1_plus_rate_of_a3
+        rate_of_cos_a1 = -sin(a1) * speed_a1
+        rate_of_cos_a12 = -rate_of_a2_plus_speed_a1 * sin(a1_plus_a2)
+        rate_of_cos_a123 = -rate_of_a2_plus_speed_a1_plus_rate_of_a3 * sin(a1_plus_a2_plus_a3)
+        shared_sum_5 = k.link_length_2 * speed_a2 + k.shared_sum * speed_a1
+        shared_sum_6 = k.link_length_3 * speed_a3 + k.shared_sum_2 * speed_a1 + k.shared_sum_3 * speed_a2
+        link_length_1_times_speed_a1 = k.link_length_1 * speed_a1
+        return (
+            -link_length_1_times_speed_a1 * rate_of_sin_a1
+            - rate_of_sin_a12 * shared_sum_5
+            - rate_of_sin_a123 * shared_sum_6,
+            link_length_1_times_speed_a1 * rate_of_cos_a1
+            + rate_of_cos_a12 * shared_sum_5
+            + rate_of_cos_a123 * shared_sum_6,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         ), status
 
     def projection(self, rotation: Rotation) -> tuple[Rotation, Codes]:

@@ -137,3 +137,28 @@ class ArrayPrograms(Programs):
             (0.0, 0.0, 0.0),
             (0.0, 0.0, -1.0),
         ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_x, axis_z, axis_c = axes
+        speed_x, speed_z, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_c, axis_x, axis_z, speed_c, speed_x, speed_z), Status.BAD_INPUT)
+        joint_x = axis_x - k.offset_x
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        rate_of_cos_c = -speed_c * sin_c
+        cos_c = cos(c)
+        rate_of_sin_c = speed_c * cos_c
+        # X where the machine has no pose
+        require(status, (joint_x >= -1e-9) & (joint_x <= 1000000001.0), Status.IMPOSSIBLE)
+        return (
+            rate_of_cos_c * speed_x + (-joint_x * rate_of_sin_c - speed_x * sin_c) * speed_c,
+            (-speed_x * cos_c - joint_x * rate_of_cos_c) * speed_c - rate_of_sin_c * speed_x,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ), status

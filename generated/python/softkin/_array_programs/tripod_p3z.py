@@ -305,3 +305,168 @@ class ArrayPrograms(Programs):
                 (slope_1_by_x * slope_2_by_y - slope_1_by_y * slope_2_by_x) * slope_3_by_z_times_one_by_determinant,
             ),
         ), status
+
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        speed_a1, speed_a2, speed_a3 = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a1, axis_a2, axis_a3, speed_a1, speed_a2, speed_a3), Status.BAD_INPUT)
+        a1 = axis_a1 - k.offset_a1
+        a2 = axis_a2 - k.offset_a2
+        centre_1_to_2_z = a2 - a1
+        a3 = axis_a3 - k.offset_a3
+        centre_1_to_3_z = a3 - a1
+        # normal to the plane of the centres
+        normal_x = k.centre_1_to_2_y * centre_1_to_3_z - centre_1_to_2_z * k.centre_1_to_3_y
+        normal_y = centre_1_to_2_z * k.centre_1_to_3_x - k.centre_1_to_2_x * centre_1_to_3_z
+        # squared length of the normal
+        normal_square = k.normal_z_squared + normal_x * normal_x + normal_y * normal_y
+        # trilateration: the foot projected on the vector to centre 2, times its length
+        projection_2 = k.sum_in_projection_2 + 0.5 * centre_1_to_2_z * centre_1_to_2_z
+        # trilateration: the foot projected on the vector to centre 3, times its length
+        projection_3 = k.sum_in_projection_3 + 0.5 * centre_1_to_3_z * centre_1_to_3_z
+        normal_divisor = select(normal_square > k.product_in_normal_divisor, normal_square, 1.0)
+        one_by_normal_square = 1.0 / normal_divisor
+        # foot of the perpendicular, seen from centre 1
+        foot_x = one_by_normal_square * (
+            (k.centre_1_to_3_y_times_normal_z - centre_1_to_3_z * normal_y) * projection_2
+            + (centre_1_to_2_z * normal_y - k.centre_1_to_2_y_times_normal_z) * projection_3
+        )
+        foot_y = one_by_normal_square * (
+            (centre_1_to_3_z * normal_x - k.centre_1_to_3_x_times_normal_z) * projection_2
+            + (k.centre_1_to_2_x_times_normal_z - centre_1_to_2_z * normal_x) * projection_3
+        )
+        foot_z = one_by_normal_square * (
+            (k.centre_1_to_3_x * normal_y - k.centre_1_to_3_y * normal_x) * projection_2
+            + (k.centre_1_to_2_y * normal_x - k.centre_1_to_2_x * normal_y) * projection_3
+        )
+        # square of the height over the plane of the centres
+        height_square = k.arm_length_squared - foot_x * foot_x - foot_y * foot_y - foot_z * foot_z
+        # height, as a multiple of the normal
+        height_by_normal = root(height_square * one_by_normal_square) * k.assembly_sign
+        x = foot_x + k.pivot_1_x + height_by_normal * normal_x
+        slope_1_by_x = 2.0 * (x - k.product_in_slope_1_by_x)
+        y = foot_y + k.pivot_1_y + height_by_normal * normal_y
+        slope_1_by_y = 2.0 * (y - k.product_in_slope_1_by_y)
+        z = a1 + foot_z + height_by_normal * k.normal_z
+        slope_1_by_z = 2.0 * (z - a1)
+        slope_2_by_y = 2.0 * (y - k.product_in_slope_2_by_y)
+        slope_2_by_z = 2.0 * (z - a2)
+        slope_3_by_y = 2.0 * (y - k.product_in_slope_3_by_y)
+        slope_3_by_z = 2.0 * (z - a3)
+        sum_in_determinant = slope_2_by_y * slope_3_by_z - slope_2_by_z * slope_3_by_y
+        slope_2_by_x = 2.0 * (x - k.product_in_slope_2_by_x)
+        slope_3_by_x = 2.0 * (x - k.product_in_slope_3_by_x)
+        sum_in_determinant_2 = slope_2_by_z * slope_3_by_x - slope_2_by_x * slope_3_by_z
+        sum_in_determinant_3 = slope_2_by_x * slope_3_by_y - slope_2_by_y * slope_3_by_x
+        # determinant dPhi/dx: zero in a type 2 singularity
+        determinant = (
+            slope_1_by_x * sum_in_determinant
+            + slope_1_by_y * sum_in_determinant_2
+            + slope_1_by_z * sum_in_determinant_3
+        )
+        determinant_divisor = select(absolute(determinant) > k.product_in_determinant_divisor, determinant, 1.0)
+        one_by_determinant = 1.0 / determinant_divisor
+        sum_in_velocity_y = slope_1_by_z * slope_3_by_x - slope_1_by_x * slope_3_by_z
+        sum_in_velocity_y_2 = slope_1_by_x * slope_2_by_z - slope_1_by_z * slope_2_by_x
+        slope_3_by_z_times_speed_a3 = slope_3_by_z * speed_a3
+        slope_2_by_z_times_speed_a2 = slope_2_by_z * speed_a2
+        speed_a1_times_slope_1_by_z = slope_1_by_z * speed_a1
+        velocity_y = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant_2
+            - slope_2_by_z_times_speed_a2 * sum_in_velocity_y
+            - slope_3_by_z_times_speed_a3 * sum_in_velocity_y_2
+        ) * one_by_determinant
+        rate_of_slope_1_by_y = 2.0 * velocity_y
+        sum_in_velocity_z = slope_1_by_x * slope_3_by_y - slope_1_by_y * slope_3_by_x
+        sum_in_velocity_z_2 = slope_1_by_y * slope_2_by_x - slope_1_by_x * slope_2_by_y
+        velocity_z = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant_3
+            - slope_2_by_z_times_speed_a2 * sum_in_velocity_z
+            - slope_3_by_z_times_speed_a3 * sum_in_velocity_z_2
+        ) * one_by_determinant
+        rate_of_slope_1_by_z = 2.0 * (velocity_z - speed_a1)
+        rate_of_slope_2_by_z = 2.0 * (velocity_z - speed_a2)
+        rate_of_slope_3_by_z = 2.0 * (velocity_z - speed_a3)
+        shared_sum = slope_1_by_y * slope_3_by_z - slope_1_by_z * slope_3_by_y
+        shared_sum_2 = slope_1_by_z * slope_2_by_y - slope_1_by_y * slope_2_by_z
+        velocity_x = (
+            speed_a1_times_slope_1_by_z * sum_in_determinant
+            - shared_sum * slope_2_by_z_times_speed_a2
+            - shared_sum_2 * slope_3_by_z_times_speed_a3
+        ) * one_by_determinant
+        rate_of_slope_1_by_x = 2.0 * velocity_x
+        rate_of_determinant = (
+            (sum_in_determinant - shared_sum - shared_sum_2) * rate_of_slope_1_by_x
+            + rate_of_slope_1_by_y * (sum_in_determinant_2 - sum_in_velocity_y - sum_in_velocity_y_2)
+            + rate_of_slope_1_by_z * sum_in_determinant_3
+            - rate_of_slope_2_by_z * sum_in_velocity_z
+            - rate_of_slope_3_by_z * sum_in_velocity_z_2
+        )
+        rate_of_determinant_divisor = select(
+            absolute(determinant) > k.product_in_determinant_divisor, rate_of_determinant, 0.0
+        )
+        shared_sum_3 = slope_1_by_y * slope_2_by_z_times_speed_a2 - slope_2_by_y * speed_a1_times_slope_1_by_z
+        shared_sum_4 = slope_3_by_y * speed_a1_times_slope_1_by_z - slope_1_by_y * slope_3_by_z_times_speed_a3
+        shared_sum_5 = slope_2_by_y * slope_3_by_z_times_speed_a3 - slope_2_by_z_times_speed_a2 * slope_3_by_y
+        shared_sum_7 = slope_2_by_x * speed_a1_times_slope_1_by_z - slope_1_by_x * slope_2_by_z_times_speed_a2
+        shared_sum_8 = slope_1_by_x * slope_3_by_z_times_speed_a3 - slope_3_by_x * speed_a1_times_slope_1_by_z
+        shared_sum_9 = slope_2_by_z_times_speed_a2 * slope_3_by_x - slope_2_by_x * slope_3_by_z_times_speed_a3
+        speed_a3_times_rate_of_slope_3_by_z = rate_of_slope_3_by_z * speed_a3
+        speed_a2_times_rate_of_slope_2_by_z = rate_of_slope_2_by_z * speed_a2
+        speed_a1_times_rate_of_slope_1_by_z = rate_of_slope_1_by_z * speed_a1
+        shared_sum_12 = (
+            speed_a2_times_rate_of_slope_2_by_z * sum_in_velocity_z
+            + speed_a3_times_rate_of_slope_3_by_z * sum_in_velocity_z_2
+            - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant_3
+        )
+        shared_sum_6 = (
+            slope_1_by_z * ((speed_a2 - speed_a1) * slope_2_by_z + slope_3_by_z * (speed_a1 - speed_a3))
+            + (speed_a3 - speed_a2) * slope_2_by_z * slope_3_by_z
+        )
+        shared_sum_10 = (
+            shared_sum * speed_a2_times_rate_of_slope_2_by_z
+            + shared_sum_2 * speed_a3_times_rate_of_slope_3_by_z
+            - rate_of_slope_1_by_y * shared_sum_6
+            - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant
+        ) * one_by_determinant + one_by_determinant * rate_of_determinant_divisor * velocity_x
+        shared_sum_11 = (
+            one_by_determinant
+            * (
+                rate_of_slope_1_by_x * shared_sum_6
+                + speed_a2_times_rate_of_slope_2_by_z * sum_in_velocity_y
+                + speed_a3_times_rate_of_slope_3_by_z * sum_in_velocity_y_2
+                - speed_a1_times_rate_of_slope_1_by_z * sum_in_determinant_2
+            )
+            + one_by_determinant * rate_of_determinant_divisor * velocity_y
+        )
+        # the centres coincide or lie on a line: nothing holds the plate
+        # the rods do not meet
+        # nothing controls the plate
+        require(
+            status,
+            (normal_square > k.product_in_normal_divisor)
+            & (absolute(determinant) > k.product_in_determinant_divisor)
+            & (height_square >= -k.arm_length_squared_times_rounding),
+            Status.IMPOSSIBLE,
+        )
+        return (
+            -shared_sum_10
+            - one_by_determinant * rate_of_slope_1_by_z * shared_sum_5
+            - one_by_determinant * rate_of_slope_2_by_z * shared_sum_4
+            - one_by_determinant * rate_of_slope_3_by_z * shared_sum_3,
+            -shared_sum_11
+            - one_by_determinant * rate_of_slope_1_by_z * shared_sum_9
+            - one_by_determinant * rate_of_slope_2_by_z * shared_sum_8
+            - one_by_determinant * rate_of_slope_3_by_z * shared_sum_7,
+            one_by_determinant
+            * (
+                rate_of_slope_1_by_x * (shared_sum_3 + shared_sum_4 + shared_sum_5)
+                + rate_of_slope_1_by_y * (shared_sum_7 + shared_sum_8 + shared_sum_9)
+                - shared_sum_12
+            )
+            - one_by_determinant * rate_of_determinant_divisor * velocity_z,
+        ), status

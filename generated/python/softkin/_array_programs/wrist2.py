@@ -174,6 +174,97 @@ class ArrayPrograms(OrientationPrograms):
             (1.0, 0.0),
         ), status
 
+    def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the rows of the Jacobian where the axes keep their speeds, per radian."""
+        axis_a, axis_b = axes
+        speed_a, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, speed_a, speed_b), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        cos_a = cos(a)
+        b = DEGREE * (axis_b - k.offset_b)
+        cos_b = cos(b)
+        r11_at_b = cos_a * cos_b
+        r21_at_b = cos_b * sin_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r31_at_b = -rate_of_sin_b * k.tool_side
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_cos_b = -sin(b) * speed_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        tool_side_times_speed_b = speed_b * k.tool_side
+        return (
+            rate_of_r31_at_b * speed_a
+            + tool_side_times_speed_b
+            * (
+                rate_of_r21_at_b * cos_a
+                + r21_at_b * rate_of_cos_a
+                - r11_at_b * rate_of_sin_a
+                - rate_of_r11_at_b * sin_a
+            ),
+            2.0 * rate_of_sin_a * tool_side_times_speed_b * sin_a + rate_of_cos_a * speed_b * k.twice_tool_side * cos_a,
+        ), status
+
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a, axis_b = axes
+        speed_a, speed_b = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, speed_a, speed_b), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        cos_a = cos(a)
+        sin_a = sin(a)
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_y_at_b = rate_of_sin_a * k.roll_axis_offset_x
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        cos_b = cos(b)
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = (rate_of_sin_a * sin_b + rate_of_sin_b * sin_a) * k.tool_side
+        rate_of_y = (
+            rate_of_y_at_b + rate_of_cos_a * k.roll_axis_offset_y + rate_of_r23_at_b * k.tool_length_times_tool_side
+        )
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_z = rate_of_cos_b * k.tool_length_times_tool_side
+        rate_of_x_at_b = rate_of_cos_a * k.roll_axis_offset_x
+        rate_of_r13_at_b = k.tool_side * (rate_of_sin_b * cos_a + rate_of_cos_a * sin_b)
+        rate_of_x = (
+            rate_of_x_at_b + rate_of_r13_at_b * k.tool_length_times_tool_side - rate_of_sin_a * k.roll_axis_offset_y
+        )
+        y_at_b = k.roll_axis_offset_x * sin_a
+        sin_b_times_tool_side = k.tool_side * sin_b
+        r23_at_b = sin_a * sin_b_times_tool_side
+        y = y_at_b + k.roll_axis_offset_y * cos_a + r23_at_b * k.tool_length_times_tool_side
+        x_at_b = k.roll_axis_offset_x * cos_a
+        r13_at_b = cos_a * sin_b_times_tool_side
+        x = x_at_b + r13_at_b * k.tool_length_times_tool_side - k.roll_axis_offset_y * sin_a
+        z = k.roll_axis_offset_z + k.tool_length_times_tool_side * cos_b
+        z_minus_roll_axis_offset_z = z - k.roll_axis_offset_z
+        tool_side_times_speed_b = speed_b * k.tool_side
+        return (
+            tool_side_times_speed_b * (rate_of_z * cos_a + rate_of_cos_a * z_minus_roll_axis_offset_z)
+            - rate_of_y * speed_a,
+            rate_of_x * speed_a
+            + (rate_of_sin_a * z_minus_roll_axis_offset_z + rate_of_z * sin_a) * tool_side_times_speed_b,
+            tool_side_times_speed_b
+            * (
+                (rate_of_x_at_b - rate_of_x) * cos_a
+                + (x_at_b - x) * rate_of_cos_a
+                + (y_at_b - y) * rate_of_sin_a
+                + (rate_of_y_at_b - rate_of_y) * sin_a
+            ),
+            -rate_of_sin_a * tool_side_times_speed_b,
+            rate_of_cos_a * tool_side_times_speed_b,
+            0.0,
+        ), status
+
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector from a flange that turns to the end point."""
         (_, _, r13), (_, _, r23), (_, _, r33) = rotation

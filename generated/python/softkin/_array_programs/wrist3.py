@@ -172,6 +172,90 @@ class ArrayPrograms(OrientationPrograms):
             (1.0, 0.0, cos_b),
         ), status
 
+    def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
+        """The acceleration of the twist where the axes keep their speeds, per radian."""
+        axis_a, axis_b, axis_c = axes
+        speed_a, speed_b, speed_c = speeds
+        k = self.constants
+        status = passed(axes, speeds)
+        # inputs must be numbers, and of reasonable size
+        require(status, reasonable(axis_a, axis_b, axis_c, speed_a, speed_b, speed_c), Status.BAD_INPUT)
+        a = DEGREE * (axis_a - k.offset_a)
+        sin_a = sin(a)
+        b = DEGREE * (axis_b - k.offset_b)
+        sin_b = sin(b)
+        r23_at_b = -sin_a * sin_b
+        cos_a = cos(a)
+        cos_b = cos(b)
+        r21_at_b = cos_b * sin_a
+        c = DEGREE * (axis_c - k.offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        r21_at_c = cos_a * sin_c + r21_at_b * cos_c
+        r22_at_c = cos_a * cos_c - r21_at_b * sin_c
+        y = r21_at_c * k.tool_offset_x + r22_at_c * k.tool_offset_y + r23_at_b * k.tool_offset_z
+        r31_at_c = cos_c * sin_b
+        r32_at_c = -sin_b * sin_c
+        z = k.tool_offset_z * cos_b + r31_at_c * k.tool_offset_x + r32_at_c * k.tool_offset_y
+        rate_of_sin_a = speed_a * cos_a
+        rate_of_sin_b = speed_b * cos_b
+        rate_of_r23_at_b = -rate_of_sin_a * sin_b - rate_of_sin_b * sin_a
+        rate_of_cos_a = -speed_a * sin_a
+        rate_of_cos_b = -speed_b * sin_b
+        rate_of_r21_at_b = rate_of_sin_a * cos_b + rate_of_cos_b * sin_a
+        rate_of_sin_c = speed_c * cos_c
+        rate_of_cos_c = -speed_c * sin_c
+        rate_of_r21_at_c = (
+            rate_of_sin_c * cos_a + rate_of_r21_at_b * cos_c + r21_at_b * rate_of_cos_c + rate_of_cos_a * sin_c
+        )
+        rate_of_r22_at_c = (
+            rate_of_cos_c * cos_a + rate_of_cos_a * cos_c - r21_at_b * rate_of_sin_c - rate_of_r21_at_b * sin_c
+        )
+        rate_of_y = (
+            rate_of_r21_at_c * k.tool_offset_x + rate_of_r22_at_c * k.tool_offset_y + rate_of_r23_at_b * k.tool_offset_z
+        )
+        rate_of_r31_at_c = rate_of_sin_b * cos_c + rate_of_cos_c * sin_b
+        rate_of_r32_at_c = -rate_of_sin_b * sin_c - rate_of_sin_c * sin_b
+        rate_of_z = (
+            rate_of_cos_b * k.tool_offset_z + rate_of_r31_at_c * k.tool_offset_x + rate_of_r32_at_c * k.tool_offset_y
+        )
+        r13_at_b = -cos_a * sin_b
+        r11_at_b = cos_a * cos_b
+        r11_at_c = r11_at_b * cos_c - sin_a * sin_c
+        r12_at_c = -cos_c * sin_a - r11_at_b * sin_c
+        x = r11_at_c * k.tool_offset_x + r12_at_c * k.tool_offset_y + r13_at_b * k.tool_offset_z
+        rate_of_r13_at_b = -rate_of_sin_b * cos_a - rate_of_cos_a * sin_b
+        rate_of_r11_at_b = rate_of_cos_b * cos_a + rate_of_cos_a * cos_b
+        rate_of_r11_at_c = (
+            rate_of_r11_at_b * cos_c + r11_at_b * rate_of_cos_c - rate_of_sin_a * sin_c - rate_of_sin_c * sin_a
+        )
+        rate_of_r12_at_c = (
+            -rate_of_sin_a * cos_c - r11_at_b * rate_of_sin_c - rate_of_cos_c * sin_a - rate_of_r11_at_b * sin_c
+        )
+        rate_of_x = (
+            rate_of_r11_at_c * k.tool_offset_x + rate_of_r12_at_c * k.tool_offset_y + rate_of_r13_at_b * k.tool_offset_z
+        )
+        shared_sum = rate_of_r13_at_b * speed_c + rate_of_sin_a * speed_b
+        shared_sum_2 = rate_of_r23_at_b * speed_c - rate_of_cos_a * speed_b
+        rate_of_cos_b_times_speed_c = rate_of_cos_b * speed_c
+        speed_a_plus_cos_b_times_speed_c = speed_a + speed_c * cos_b
+        shared_sum_3 = r23_at_b * speed_c - speed_b * cos_a
+        shared_sum_4 = r13_at_b * speed_c + speed_b * sin_a
+        return (
+            rate_of_z * shared_sum_3
+            + shared_sum_2 * z
+            - rate_of_cos_b_times_speed_c * y
+            - rate_of_y * speed_a_plus_cos_b_times_speed_c,
+            rate_of_cos_b_times_speed_c * x
+            + rate_of_x * speed_a_plus_cos_b_times_speed_c
+            - rate_of_z * shared_sum_4
+            - shared_sum * z,
+            rate_of_y * shared_sum_4 + shared_sum * y - rate_of_x * shared_sum_3 - shared_sum_2 * x,
+            shared_sum,
+            shared_sum_2,
+            rate_of_cos_b_times_speed_c,
+        ), status
+
     def end_point_shift(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """The vector from a flange that turns to the end point."""
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation

@@ -29,7 +29,6 @@ def unrolled(k: Constants) -> Unrolled:
     pivot_length_times_cos_nutation_squared = k.pivot_length_times_cos_nutation_squared
     pivot_length_times_sin_nutation, product_in_joint_x = k.pivot_length_times_sin_nutation, k.product_in_joint_x
     sin_nutation, single_b, single_c = k.sin_nutation, k.single_b, k.single_c
-    shared_size_2 = abs(cos_nutation_squared - 1.0)
     no_offsets = not any((offset_b, offset_c, offset_x, offset_y, offset_z))
 
     def branches(
@@ -38,9 +37,6 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
-        # b: its effective length is too short
-        if not (shared_size_2 > 5e-10):
-            return 2 * (refused[Status.UNREACHABLE],)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0
@@ -127,9 +123,6 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_tilt,) = signs
         _, _, _, ref_c, _ = 5 * (0.0,) if reference is None else reference
-        # b: its effective length is too short
-        if not (shared_size_2 > 5e-10):
-            return None
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0

@@ -18,16 +18,14 @@ if TYPE_CHECKING:
 
 def unrolled(k: Constants) -> Unrolled:
     """The functions of one machine, for its constants."""
-    cos_nutation, cos_nutation_squared = k.cos_nutation, k.cos_nutation_squared
-    cos_nutation_times_sin_nutation, highest_b = k.cos_nutation_times_sin_nutation, k.highest_b
-    highest_c, highest_x, highest_y, highest_z = k.highest_c, k.highest_x, k.highest_y, k.highest_z
-    lowest_b, lowest_c, lowest_x, lowest_y, lowest_z = k.lowest_b, k.lowest_c, k.lowest_x, k.lowest_y, k.lowest_z
-    mid_b, mid_c, offset_b, offset_c, offset_x = k.mid_b, k.mid_c, k.offset_b, k.offset_c, k.offset_x
-    offset_y, offset_z = k.offset_y, k.offset_z
+    cos_nutation, cos_nutation_times_sin_nutation = k.cos_nutation, k.cos_nutation_times_sin_nutation
+    highest_b, highest_c, highest_x, highest_y = k.highest_b, k.highest_c, k.highest_x, k.highest_y
+    highest_z, lowest_b, lowest_c, lowest_x, lowest_y = k.highest_z, k.lowest_b, k.lowest_c, k.lowest_x, k.lowest_y
+    lowest_z, mid_b, mid_c, offset_b, offset_c = k.lowest_z, k.mid_b, k.mid_c, k.offset_b, k.offset_c
+    offset_x, offset_y, offset_z = k.offset_x, k.offset_y, k.offset_z
     one_minus_cos_nutation_squared_times_2, pivot_x = k.one_minus_cos_nutation_squared_times_2, k.pivot_x
     pivot_z, sin_nutation, single_b, single_c = k.pivot_z, k.sin_nutation, k.single_b, k.single_c
     tool_length = k.tool_length
-    shared_size_2 = abs(cos_nutation_squared - 1.0)
     no_offsets = not any((offset_b, offset_c, offset_x, offset_y, offset_z))
 
     def branches(
@@ -36,9 +34,6 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
-        # b: its effective length is too short
-        if not (shared_size_2 > 5e-10):
-            return 2 * (refused[Status.UNREACHABLE],)
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0
@@ -124,9 +119,6 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_tilt,) = signs
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
-        # b: its effective length is too short
-        if not (shared_size_2 > 5e-10):
-            return None
         r13_squared_plus_r23_squared = r13 * r13 + r23 * r23
         # law of cosines for b (r33): 1 - cosine, times a scale
         one_less_cos_b = -r13_squared_plus_r23_squared / (1.0 + abs(r33)) if -r33 < 0.0 else r33 - 1.0

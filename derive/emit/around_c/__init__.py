@@ -1,0 +1,4 @@
+"""Controllers that take the C of a machine with a file around it: Klipper, B&R mapp Motion.
+
+package: a controller as data, and its files
+"""

@@ -1,0 +1,1 @@
+"""Klipper reads a program without hardware, and writes every step: these are decoded, and compared with the package."""

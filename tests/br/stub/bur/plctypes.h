@@ -1,0 +1,7 @@
+/* The types of the controller that the tests need, on this computer. */
+#ifndef PLCTYPES_H
+#define PLCTYPES_H
+#include <stdint.h>
+typedef double LREAL;
+typedef uint32_t UDINT;
+#endif
