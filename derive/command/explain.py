@@ -117,7 +117,9 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
         if branch.is_crossing and mechanism.search is not None:
             joint, (first, second) = mechanism.search.joint.name, branch.names
             yield f'  crossing("{branch.name}", {signs})'
-            yield f"       whether the residual rises (1 {first}) or falls (2 {second}) with {joint} at the root;"
+            rises = f"whether the residual rises (1 {first}) or falls (2 {second}) with {joint} at the root"
+            sign = f"whether the determinant of the Jacobian is positive (1 {first}) or negative (2 {second})"
+            yield f"       {sign if mechanism.search.is_eliminated else rises};"
             yield f"       of the roots of one branch the answer is the one whose {joint} is nearest to the reference"
             continue
         indicator = in_words(mechanism, branch.indicator)

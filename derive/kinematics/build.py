@@ -129,7 +129,7 @@ def _scanned(both: Scanned) -> Kinematics:
     searched, and the determinant of the Jacobian is the margin.
     """
     mechanism = both.mechanism
-    tried = () if both.elimination else trial_on_branch(both).statements
+    tried = () if both.eliminated else trial_on_branch(both).statements
     refuse_names(mechanism, (*GOAL.values(), *(s.name for s in tried)))
     refuse_shared_names(mechanism, branch_statements(both))
     statements, margins = margin_statements(both)

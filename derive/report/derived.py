@@ -124,7 +124,10 @@ def derived_of(solution: Solution) -> Derived:
 def _searched(both: Scanned) -> Derived:
     mechanism, search = both.mechanism, both.mechanism.search
     assert search is not None
-    routes = [_route(f"A trial: {search.joint.name} is known", both.trial, both.trial_branches)]
+    title = f"A trial: {search.joint.name} is known"
+    if both.eliminated is not None:
+        title += f"; {both.eliminated.elimination.words}"
+    routes = [_route(title, both.trial, both.trial_branches)]
     if both.closed is not None and search.where is not None:
         title = f"Where {search.where.name} is 0: in closed form"
         routes.insert(0, _route(title, both.closed, both.closed_branches))

@@ -13,6 +13,7 @@ exact/: forward and inverse kinematics against the closure in a finite field, wh
 frames: the frames of a chain, multiplied out factor by factor; CasADi functions over rows of samples
 home_samples: axis values of a loop that turns its platform, around its home pose
 inverse: the checks of the inverse: every slot, the way back, no solution missing; the assembly mode of a platform
+onward: all solutions of a searched arm, one after the other
 orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root search meet
 roots: all solutions of the closure for a pose, from many starts

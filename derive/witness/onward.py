@@ -1,4 +1,4 @@
-"""All solutions of a searched arm, one after the other: the next one ahead, around the circle, as `inverse_all` asks."""
+"""All solutions of a searched arm, one after the other: the next one ahead around the circle, as `inverse_all` asks."""
 
 from __future__ import annotations
 

@@ -125,10 +125,10 @@ def _configuration(kinematics: Kinematics, block: Block) -> Iterator[str]:
     for branch, described in zip(block.branches, kinematics.branches, strict=True):
         text = f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}."
         if described.is_crossing and search is not None:
-            text += (
-                f" It tells solutions apart whose other bytes are equal: what the search along {search.joint.name} "
-                "brings to zero rises or falls there. Leave it automatic unless you need one of them."
-            )
+            rises = f"what the search along {search.joint.name} brings to zero rises or falls there"
+            tells = "it is the sign of the determinant of the Jacobian" if search.is_eliminated else rises
+            text += f" It tells solutions apart whose other bytes are equal: {tells}. "
+            text += "Leave it automatic unless you need one of them."
         yield from _item(text)
     for turns in (_PERIOD, _GEARED):
         periods = [p for p in block.periods if bool(p.turns) == (turns is _GEARED)]

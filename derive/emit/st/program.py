@@ -249,7 +249,8 @@ def _solver(system: Solve) -> _Arrays:
 def elements(system: Solve) -> dict[str, str]:
     """The array elements that hold the solution, by the names of the unknowns."""
     return {
-        n.name: f"{_solver(system).right}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)
+        n.name: f"{_solver(system).right}[{k // system.columns + 1}, {k % system.columns + 1}]"
+        for k, n in enumerate(system.names)
     }
 
 

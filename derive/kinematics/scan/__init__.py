@@ -3,18 +3,19 @@
 A trial solves all joints but one, which is known, and leaves a residual, which is zero at a root. Like `kinematics`,
 it may import the folders from `ir` to `optimize`.
 
-candidates: all candidates for a root in closed form, where the residual is a conic
 choice: the choice of the joint that is searched
-conic: where the unit circle meets a conic
 derivations: the closed form and the trial, and the branches of their steps
+elimination/: six-axis arms of any shape, whose other joints follow from linear equations
 guards: the conditions under which a trial is within reach
-inverse: the inverse: closed form and scan in one program
+inverse: the inverse: closed form and search in one program
 margins: the margins
-own_side: the root on one side of a trial, next to an angle at which the conic meets the circle
-parabola: a step towards a root that may be double
-position_first: the position of an arm with a spherical wrist, improved before the wrist follows it
-programs: the trial, the search for the root nearest to the reference, the joints at a root
-quartic: the residual as a conic in cosine and sine of the joint, where it is one
+parts: parts of the circle in which the wave may vanish
+product: the residual multiplied over the signs of its roots
+programs: the trial, the joints at a joint value, the steps on the closure
+samples: poses of random machines, by which decisions are made
+search: the search for the root nearest to the reference, or the next one ahead
 slopes: every value of a program, with its derivative by one input
-waves: the values of a program as waves in one angle
+starts: the starts in a part of the circle
+tried: the trials in a part of the circle
+wave: the product, or the determinant of an elimination, as a sum of waves in the joint
 """

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Joint, Mechanism, Search, Turning, crossing
+from derive.description.mechanism import Branch, Joint, Mechanism, Search, Turning, crossing
 from derive.equations.closures.commanded import closure_at
 from derive.equations.conditions import with_conditions
 from derive.equations.machine_checks import with_checks
@@ -95,7 +95,8 @@ def _eliminated(mechanism: Mechanism) -> Mechanism | None:
     found = elimination_of(mechanism, pose_at_axes(mechanism))
     if found is None:
         return None
-    chosen = _with_crossing(mechanism, Search(found.searched, is_eliminated=True))
+    side = crossing("crossing", positive=+1, negative=-1)
+    chosen = _with_crossing(mechanism, Search(found.searched, is_eliminated=True), side)
     (last,) = (b for b in chosen.branches if b.is_crossing)
     joint, most = found.searched.name, min(2 * found.degree, MOST_SOLUTIONS)
     note = (
@@ -107,11 +108,11 @@ def _eliminated(mechanism: Mechanism) -> Mechanism | None:
     return replace(chosen, notes=(*mechanism.notes, note))
 
 
-def _with_crossing(mechanism: Mechanism, search: Search) -> Mechanism:
-    """The mechanism with its search; its last branch tells the roots apart."""
+def _with_crossing(mechanism: Mechanism, search: Search, side: Branch) -> Mechanism:
+    """The mechanism with its search; its last branch tells the roots apart: `side`, if it states none."""
     own = tuple(b for b in mechanism.branches if b.is_crossing)
     others = tuple(b for b in mechanism.branches if not b.is_crossing)
-    last = own or (crossing("crossing", rising=+1, falling=-1),)
+    last = own or (side,)
     return replace(mechanism, branches=(*others, *last), search=search)
 
 
@@ -162,7 +163,8 @@ def _searched(mechanism: Mechanism, found: _Candidate) -> Mechanism:
     """The mechanism with its search; its last branch is the sign of the slope at a root."""
     forward, trial = pose_at_axes(mechanism), found.trial
     refuse_shared_names(mechanism, (*forward.statements, *trial.naming, *trial.derivation.statements))
-    named = with_named_steps(_with_crossing(mechanism, Search(found.joint)), trial, forward)
+    side = crossing("crossing", rising=+1, falling=-1)
+    named = with_named_steps(_with_crossing(mechanism, Search(found.joint), side), trial, forward)
     noted = replace(named, notes=(*mechanism.notes, _note(named, found)))
     return with_conditions(with_checks(noted, trial.checks), trial.derivation.conditions)
 

@@ -24,7 +24,7 @@ from derive.kinematics.branches.assignment import Assignment, assign, refuse_unn
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose, without_steps
 from derive.kinematics.scan.elimination.equations import Equations, equations_of
-from derive.kinematics.scan.elimination.order import Elimination, elimination_of
+from derive.kinematics.scan.elimination.order import elimination_of
 from derive.kinematics.scan.guards import conditions_of, guards_of, least, room_of
 from derive.kinematics.scan.programs import Trial, trial_of, with_goal
 from derive.kinematics.scan.slopes import slope_name, with_slopes
@@ -46,7 +46,7 @@ class Scanned:
     trial_branches: tuple[Assignment, ...]
     asked: tuple[Branch, ...]
     """The branches that no step of a trial decides."""
-    elimination: tuple[Elimination, Equations] | None = None
+    eliminated: Equations | None = None
     """How the other joints follow from the searched one, where no steps solve them; `trial` has none then."""
 
 
@@ -78,8 +78,7 @@ def _by_elimination(mechanism: Mechanism, forward: Forward) -> Scanned:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, the other joints are not eliminated")
     trial = without_steps(mechanism, mechanism.search.joint)
     _, asked, _ = steps_and_rest(mechanism, trial, forward)
-    equations = equations_of(mechanism, elimination)
-    return Scanned(mechanism, forward, None, (), trial, (), asked, (elimination, equations))
+    return Scanned(mechanism, forward, None, (), trial, (), asked, equations_of(mechanism, elimination))
 
 
 def _in_closed_form(mechanism: Mechanism) -> tuple[Inverse | None, tuple[Assignment, ...]]:

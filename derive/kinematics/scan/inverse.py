@@ -28,7 +28,7 @@ from derive.kinematics.scan.derivations import (
     trial_on_branch,
     wanted,
 )
-from derive.kinematics.scan.elimination.vanishing import trial_programs
+from derive.kinematics.scan.elimination.vanishing import eliminated_trial
 from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
 from derive.kinematics.scan.parts import look_program
 from derive.kinematics.scan.programs import (
@@ -105,8 +105,8 @@ def search_of(both: Scanned) -> Program:
     mechanism = both.mechanism
     assert mechanism.search is not None
     wave, degree = wave_program(both)
-    if both.elimination is not None:
-        tries, joints = trial_programs(mechanism, *both.elimination)
+    if both.eliminated is not None:
+        tries, joints = eliminated_trial(mechanism, both.eliminated), None
     else:
         trial = trial_on_branch(both)
         tries, joints = try_program(trial), joints_program(mechanism, trial)

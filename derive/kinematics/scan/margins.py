@@ -142,7 +142,7 @@ def _orientation(both: Scanned) -> int:
     """
     mechanism = both.mechanism
     assert mechanism.search is not None
-    if both.elimination is not None:  # no residual rises or falls: the side is that of det J
+    if both.eliminated is not None:  # no residual rises or falls: the side is that of det J
         return 1
     machine = sample_machine(mechanism, 51)
     axes = sample_axes(mechanism, machine, _SAMPLES, 52)

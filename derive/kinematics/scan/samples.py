@@ -17,7 +17,7 @@ MACHINES = 6
 
 
 def samples_of(mechanism: Mechanism, forward: Forward, poses: int = 1) -> dict[str, Array]:
-    """Machines, each with some poses: their inputs, the pose as the programs of a search name it, and the joints there."""
+    """Machines, each with some poses: their inputs, the pose in the names of the search, and the joints there."""
     names = [*(real(c) for c in "xyz"), *forward.rotation, *(j.symbol for j in mechanism.joints)]
     program = normalise("pose", forward.statements, [Output(n.name, n) for n in names])
     rows: list[dict[str, Array]] = []

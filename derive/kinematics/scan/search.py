@@ -85,7 +85,8 @@ class Steps:
 
     look: Program
     trial: Program
-    joints_at: Program
+    joints_at: Program | None
+    """None where the trial tells the joints, too: its rate is 0, so that one trial settles."""
     step: Program
     fits: Program
 
@@ -187,6 +188,8 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     narrow = is_narrow(_WIDTH)
     is_new = sp.Or(sp.And(narrow, is_simple), sp.And(sp.Not(narrow), sp.Not(flag("is_known"))))
     yield Let(flag("is_near"), sp.And(flag("is_settled"), is_new))
+    if steps.joints_at is None:
+        return
     given = {TRIED: START + direction * BEST_NOW, SIDE: SIDE}
     given = {s: v for s, v in given.items() if s in steps.joints_at.inputs}
     yield _call(steps.joints_at, arguments, given, flag("is_near"))

@@ -23,6 +23,7 @@ from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement
 from derive.ir.symbols import TRIED, cosine, count, real, sine
 from derive.kept import kept_by_identity
 from derive.kinematics.scan.derivations import Scanned, trial_of_all_signs
+from derive.kinematics.scan.elimination.equations import Equations
 from derive.kinematics.scan.elimination.matrix import call_of, determinant_of
 from derive.kinematics.scan.product import Product, product_of
 from derive.kinematics.scan.programs import LOOKED_FOR
@@ -60,7 +61,7 @@ def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[
 @stage("the wave of a root search")
 def wave_program(both: Scanned) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
-    before, sampled, value, degree = _determinant(both) if both.elimination else _product(both)
+    before, sampled, value, degree = _product(both) if both.eliminated is None else _determinant(both.eliminated)
     most = degree + _BEYOND
     points = 2 * most + 1
     number, names = count("sample"), names_of(most)
@@ -107,13 +108,12 @@ def _product(both: Scanned) -> _Sampled:
     return (), found.statements, value, degree
 
 
-def _determinant(both: Scanned) -> _Sampled:
+def _determinant(equations: Equations) -> _Sampled:
     """The determinant of the equations that an elimination leaves."""
-    assert both.elimination is not None
-    elimination, equations = both.elimination
-    own = Let(cosine(elimination.searched.symbol), sp.cos(TRIED)), Let(sine(elimination.searched.symbol), sp.sin(TRIED))
-    statements, value = determinant_of(elimination, equations)
-    return (call_of(equations),), (*own, *statements), value, elimination.degree
+    joint = equations.elimination.searched.symbol
+    statements, value = determinant_of(equations)
+    own = Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED))
+    return (call_of(equations),), (*own, *statements), value, equations.elimination.degree
 
 
 def _around(both: Scanned) -> dict[str, Array]:

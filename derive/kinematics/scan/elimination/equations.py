@@ -34,6 +34,7 @@ Vector = list[sp.Expr]
 class Equations:
     """The program, and by what its outputs are read."""
 
+    elimination: Elimination
     program: Program
     arguments: tuple[sp.Symbol, ...]
     """Its inputs that are no constants of the machine."""
@@ -99,7 +100,9 @@ def equations_of(mechanism: Mechanism, elimination: Elimination) -> Equations:
     program = normalise(NAME, written.statements, [Output(v.name, v) for v in found])
     summary = "Six equations without two of the joints, linear in cosine and sine of the searched one"
     own = {*GOAL.values(), *map(reference_value, mechanism.joints)}
-    return Equations(replace(program, summary=summary), tuple(s for s in program.inputs if s in own), table)
+    return Equations(
+        elimination, replace(program, summary=summary), tuple(s for s in program.inputs if s in own), table
+    )
 
 
 def _with_name(written: Written, name: str, value: sp.Expr) -> sp.Expr:

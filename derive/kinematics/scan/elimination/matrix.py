@@ -18,7 +18,12 @@ Entries = dict[tuple[int, int, int], sp.Expr]
 def call_of(equations: Equations) -> Call:
     """The call of the program that eliminates a and b."""
     program = equations.program
-    return Call(program, tuple((s, s) for s in equations.arguments), tuple(real(o.name) for o in program.outputs), "two of the joints are eliminated")
+    return Call(
+        program,
+        tuple((s, s) for s in equations.arguments),
+        tuple(real(o.name) for o in program.outputs),
+        "two of the joints are eliminated",
+    )
 
 
 def entries_at(equations: Equations, cos_c: sp.Expr, sin_c: sp.Expr, numbers: range) -> tuple[list[Let], Entries]:
@@ -48,11 +53,11 @@ def rows_of(elimination: Elimination, entries: Entries) -> Iterator[list[sp.Expr
         yield row
 
 
-def determinant_of(elimination: Elimination, equations: Equations) -> tuple[list[Let | Solve], sp.Expr]:
+def determinant_of(equations: Equations) -> tuple[list[Let | Solve], sp.Expr]:
     """The determinant of the matrix: it vanishes where the arm closes. The statements read cosine and sine of c."""
-    joint = elimination.searched.symbol
+    joint = equations.elimination.searched.symbol
     lets, entries = entries_at(equations, cosine(joint), sine(joint), VANISHING)
-    rows = [entry for row in rows_of(elimination, entries) for entry in row]
+    rows = [entry for row in rows_of(equations.elimination, entries) for entry in row]
     note = "it vanishes where powers of two half angles satisfy all equations"
     return [*lets, Solve((), tuple(rows), (), real("determinant"), note)], real("determinant")
 

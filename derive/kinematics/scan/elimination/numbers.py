@@ -79,4 +79,5 @@ def _spread(lines: Array, place: Place) -> Array:
 
 
 def _halved(lines: Array, place: Place) -> Array:
-    return np.einsum("xk,nk...->nx...", halves(place), lines)
+    found: Array = np.einsum("xk,nk...->nx...", halves(place), lines)
+    return found

@@ -61,6 +61,15 @@ class Elimination:
         return self.ring.places[SEARCHED].joint
 
     @property
+    def words(self) -> str:
+        """How the other joints follow, in words."""
+        a, b, _, d, e, f = (place.joint.name for place in self.ring.places)
+        return (
+            f"of 14 linear equations for the axis of {f} eight eliminate {a} and {b}; {self.columns} products of "
+            f"powers of the half angles of {d} and {e} satisfy the others where a determinant vanishes"
+        )
+
+    @property
     def left(self) -> tuple[int, ...]:
         """The values whose equations are left without a and b."""
         return tuple(k for k in range(1, SIZE) if k not in self.solved)
@@ -131,7 +140,10 @@ def _tried(ring: Ring, values: Mapping[str, Array], highest: tuple[int, int]) ->
         if not _are_regular(table[:, :, rows]):
             continue
         chosen = tuple(all_rows[k] for k in rows)
-        degree, steepness = _degree(determinant), _steepness(determinant, values[ring.places[SEARCHED].joint.symbol.name])
+        degree, steepness = (
+            _degree(determinant),
+            _steepness(determinant, values[ring.places[SEARCHED].joint.symbol.name]),
+        )
         found = _Found(Elimination(ring, solved, highest, chosen, degree), steepness)
         best = found if best is None or found.score > best.score else best
     return best

@@ -1,6 +1,6 @@
 """The joints of an arm and the frames between them, in a circle: the commanded pose leads from the flange to the base.
 
-    base F1 J1 … J6 F2 = pose   →   J1 … J6 (F2 pose^-1 F1) = 1
+base F1 J1 … J6 F2 = pose   →   J1 … J6 (F2 pose^-1 F1) = 1
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ class Place:
     @property
     def move(self) -> Move:
         """Its motion, with factors 1 and `unknowns`."""
-        found = turn(self.axis, sp.Integer(1), sp.Integer(1)) if self.joint.is_angle else shift(self.axis, sp.Integer(1))
+        found = (
+            turn(self.axis, sp.Integer(1), sp.Integer(1)) if self.joint.is_angle else shift(self.axis, sp.Integer(1))
+        )
         odd = 2 if self.joint.is_angle else 1
         parts = tuple(p * self.sense if k == odd else p for k, p in enumerate(found.parts))
         return Move(parts, (sp.Integer(1), *self.unknowns))
@@ -75,9 +77,7 @@ class Ring:
 
     def begun_at(self, first: int) -> Ring:
         """The ring, begun at another joint."""
-        return Ring(
-            (*self.places[first:], *self.places[:first]), (*self.links[first:], *self.links[:first]), self.lets
-        )
+        return Ring((*self.places[first:], *self.places[:first]), (*self.links[first:], *self.links[:first]), self.lets)
 
     @property
     def reversed(self) -> Ring:
@@ -105,18 +105,16 @@ def ring_of(mechanism: Mechanism) -> Ring | None:
     links: list[list[Fixed]] = [[]]
     for factor in chain.factors:
         moving = [j for j in joints if j.symbol in factor.amount.free_symbols]
-        if moving:
-            place = _place(factor, moving[0])
-            if len(moving) > 1 or place is None or place.joint in (p.joint for p in places):
-                return None
-            rest = sp.expand(factor.amount - place.sense * place.joint.symbol)
-            factor = replace(factor, amount=rest)
-        if factor.amount != 0:
-            links[-1].append(_fixed(mechanism, factor, lets))
-        if moving:
-            places.append(place)
+        moved = [place for j in moving if (place := _place(factor, j)) is not None]
+        if len(moving) > 1 or len(moved) < len(moving):
+            return None
+        rest = sp.expand(factor.amount - sp.Add(*(p.sense * p.joint.symbol for p in moved)))
+        if rest != 0:
+            links[-1].append(_fixed(mechanism, replace(factor, amount=rest), lets))
+        if moved:
+            places += moved
             links.append([])
-    if len(places) != JOINTS:
+    if len({p.joint.name for p in places}) != JOINTS or len(places) != JOINTS:
         return None
     first, *others, last = links
     found = (*map(tuple, others), (*last, *_pose(), *first))

@@ -36,25 +36,24 @@ Four = tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]
 """A matrix of two rows, by rows."""
 
 
-def trial_programs(mechanism: Mechanism, elimination: Elimination, equations: Equations) -> tuple[Program, Program]:
-    """The trial, which tells how well a value of the searched joint closes the arm, and the joints there."""
-    written = _Written(mechanism, elimination, equations)
-    body = written.all()
+def eliminated_trial(mechanism: Mechanism, equations: Equations) -> Program:
+    """The trial: how well the arm closes at a value of the searched joint, and all joints there."""
+    written = _Written(mechanism, equations)
     outputs = [Output(REMAINDER.name, real("deviation")), Output(RATE.name, _ZERO), Output(ROOM.name, real("room"))]
-    trial = normalise("try_joint", body, outputs)
-    joints = [Output(begun(p.joint.symbol).name, written.value_of(p)) for p in elimination.ring.places]
-    at = normalise("joints_at", body, joints)
-    return (
-        replace(trial, summary="How well the other joints follow from the searched one, and the room to a second way"),
-        replace(at, summary="The joints with the searched one known"),
-    )
+    outputs += [Output(begun(p.joint.symbol).name, written.value_of(p)) for p in equations.elimination.ring.places]
+    trial = normalise("try_joint", written.all(), outputs)
+    return replace(trial, summary="How well the other joints follow from the searched one, and what they are")
 
 
 @dataclass(frozen=True)
 class _Written:
     mechanism: Mechanism
-    elimination: Elimination
     equations: Equations
+
+    @property
+    def elimination(self) -> Elimination:
+        """What is eliminated."""
+        return self.equations.elimination
 
     def all(self) -> list[Statement]:
         """All statements."""
@@ -66,7 +65,12 @@ class _Written:
         held = [let for j in self.mechanism.held_joints for let in held_lets(j)]
         ring = self.elimination.ring
         return [
-            *(*fixed_lets(self.mechanism), *held, *ring.lets, call_of(self.equations), *own, *lets),
+            *fixed_lets(self.mechanism),
+            *held,
+            *ring.lets,
+            call_of(self.equations),
+            *own,
+            *lets,
             _bordered(rows),
             *_two_ways(self.elimination),
             *_half_angles(self.elimination),
@@ -206,10 +210,16 @@ def _way(number: int, matrix: Sequence[sp.Expr]) -> Iterator[Let]:
     yield Let(shares[0], Select(is_upper, names[1], names[3]))
     yield Let(shares[1], -Select(is_upper, names[0], names[2]))
     gram = real("gram_00") * shares[0] ** 2 + 2 * real("gram_01") * shares[0] * shares[1]
-    size, left = real(f"size_of_way_{number}"), [real(f"remains_{i}_0") * shares[0] + real(f"remains_{i}_1") * shares[1] for i in range(2)]
+    size, left = (
+        real(f"size_of_way_{number}"),
+        [real(f"remains_{i}_0") * shares[0] + real(f"remains_{i}_1") * shares[1] for i in range(2)],
+    )
     yield Let(size, gram + real("gram_11") * shares[1] ** 2)
     leaves = sp.Add(*(value**2 for value in left))
-    yield Let(real(f"left_over_{number}"), Select(sp.Gt(size, 0), leaves / Select(sp.Gt(size, 0), size, _ONE), sp.Float("1e30")))
+    yield Let(
+        real(f"left_over_{number}"),
+        Select(sp.Gt(size, 0), leaves / Select(sp.Gt(size, 0), size, _ONE), sp.Float("1e30")),
+    )
 
 
 def _half_angles(elimination: Elimination) -> Iterator[Let]:
@@ -218,7 +228,9 @@ def _half_angles(elimination: Elimination) -> Iterator[Let]:
     table = [[real(f"power_{i * wide + j}") for j in range(wide)] for i in range(high)]
     turned = [list(column) for column in zip(*table, strict=True)]
     for word, lines in (("d", table), ("e", turned)):
-        pairs = [(u, v) for one, other in zip(lines[:-1], lines[1:], strict=True) for u, v in zip(one, other, strict=True)]
+        pairs = [
+            (u, v) for one, other in zip(lines[:-1], lines[1:], strict=True) for u, v in zip(one, other, strict=True)
+        ]
         upper, mixed, lower = (real(f"{name}_of_{word}") for name in ("upper", "mixed", "lower"))
         yield Let(upper, sp.Add(*(u * u for u, _ in pairs)))
         yield Let(mixed, sp.Add(*(u * v for u, v in pairs)))
