@@ -1293,7 +1293,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   const int wanted_crossing = (int)given[19], wanted_elbow = (int)given[20],
       wanted_shoulder = (int)given[21], wanted_wrist = (int)given[22];
   const bool looked_for = given[13] != 0.0, onward = given[15] != 0.0;
-  const double sum_in_way_ends = 360.0*SOFTKIN_DEGREE - 1e-7;
+  const double sum_in_way_ends_2 = 360.0*SOFTKIN_DEGREE - 1e-7;
   /* one step of the search */
   int stage = 0;
   int direction = 1;
@@ -1343,15 +1343,15 @@ static softkin_status find_root(const void *machine, const double *given, double
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
       begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
-      moved_q5, moved_q6, start_minus_q6, way_ahead, nearest_now, moved, place_next, width_next,
-      shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
-      spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
-      value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
-      place_of_start, at_next, best_next, least_next, way_next, last_next, growth_before_next, bend_next,
-      settled_1_next, settled_2_next, settled_3_next, settled_4_next, settled_5_next, settled_6_next,
-      q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next, kept_now_q2, q3_next,
-      met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next, met_from_q5_next,
-      kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
+      moved_q5, moved_q6, sum_in_way_ends, start_minus_q6, way_ahead, nearest_now, moved, place_next,
+      width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now,
+      error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
+      at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
+      value_in_place_of_start, place_of_start, at_next, best_next, least_next, way_next, last_next,
+      growth_before_next, bend_next, settled_1_next, settled_2_next, settled_3_next, settled_4_next,
+      settled_5_next, settled_6_next, q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next,
+      kept_now_q2, q3_next, met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next,
+      met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
   bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends, is_better,
@@ -1448,16 +1448,17 @@ static softkin_status find_root(const void *machine, const double *given, double
       }
     }
     fits = results_of_5[0] != 0.0;
+    sum_in_way_ends = 2e-7 + nearest;
     way_ends = (stage == 0) && (width <= 0.0)
-        && (place_ >= (onward ? sum_in_way_ends
-        : (nearest < 180.0*SOFTKIN_DEGREE ? 2e-7 + nearest : 180.0*SOFTKIN_DEGREE)));
+        && (place_ >= (onward ? (nearest < 360.0*SOFTKIN_DEGREE ? sum_in_way_ends : sum_in_way_ends_2)
+        : (nearest < 180.0*SOFTKIN_DEGREE ? sum_in_way_ends : 180.0*SOFTKIN_DEGREE)));
     start_minus_q6 = start_ - q6;
     way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
         + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
         cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
         : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
     is_better = fits && meets_pose && (way_ahead < nearest)
-        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends)));
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends_2)));
     nearest_now = is_better ? way_ahead : nearest;
     is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
@@ -1482,7 +1483,7 @@ static softkin_status find_root(const void *machine, const double *given, double
         : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
     turns_back = way_ends && (!onward) && (direction > 0);
     is_over = (passes_left <= 0) || (way_ends && (!turns_back))
-        || (onward && (next_stage == 0) && (nearest_now < 9.0));
+        || (onward && (next_stage == 0) && (nearest_now <= 2e-7 + place_plus_width));
     direction_next = turns_back ? -1 : direction;
     place_next = turns_back ? 0.0
         : (part_is_done ? place_plus_width

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 678629 additions, 895644 multiplications, 34612 divisions, 18014 square roots, 36068 sines
-    inverse, all 16 branches: 10858337 additions, 14330400 multiplications, 553792 divisions, 288224 square
+    inverse: 680130 additions, 897145 multiplications, 34612 divisions, 18014 square roots, 36068 sines
+    inverse, all 16 branches: 10882353 additions, 14354416 multiplications, 553792 divisions, 288224 square
     roots, 577088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset f4d0abcee072b5eb"
+    KEY = "ac6_rzryryrxryrz_j6offset d46281d2838a3676"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1665,7 +1665,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        sum_in_way_ends_2 = 360.0 * DEGREE - 1e-7
         # one step of the search
         (
             stage,
@@ -1926,12 +1926,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (fits,) = found
             else:
                 (fits,) = (False,)
+            sum_in_way_ends = 2e-7 + nearest
             way_ends = (
                 (stage == 0)
                 and (width <= 0.0)
                 and (
                     place
-                    >= (sum_in_way_ends if onward else (2e-7 + nearest if nearest < 180.0 * DEGREE else 180.0 * DEGREE))
+                    >= (
+                        (sum_in_way_ends if nearest < 360.0 * DEGREE else sum_in_way_ends_2)
+                        if onward
+                        else (sum_in_way_ends if nearest < 180.0 * DEGREE else 180.0 * DEGREE)
+                    )
                 )
             )
             start_minus_q6 = start - q6
@@ -1949,7 +1954,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 fits
                 and meets_pose
                 and (way_ahead < nearest)
-                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_way_ends)))
+                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_way_ends_2)))
             )
             nearest_now = way_ahead if is_better else nearest
             is_shortest = (stage == 1) and (trials >= 11)
@@ -1998,7 +2003,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             is_over = (
                 (passes_left <= 0)
                 or (way_ends and (not turns_back))
-                or (onward and (next_stage == 0) and (nearest_now < 9.0))
+                or (onward and (next_stage == 0) and (nearest_now <= 2e-7 + place_plus_width))
             )
             direction_next = -1 if turns_back else direction
             place_next = (

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8613
+    VALUES = 8629
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1507,7 +1507,7 @@ class ArrayPrograms(Programs):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        sum_in_way_ends_2 = 360.0 * DEGREE - 1e-7
         # one step of the search
         (
             stage,
@@ -1757,12 +1757,17 @@ class ArrayPrograms(Programs):
                 (False,),
             )
             (fits,) = found
+            sum_in_way_ends = 2e-7 + nearest
             way_ends = (
                 (stage == 0)
                 & (width <= 0.0)
                 & (
                     place
-                    >= select(onward, sum_in_way_ends, select(nearest < 180.0 * DEGREE, 2e-7 + nearest, 180.0 * DEGREE))
+                    >= select(
+                        onward,
+                        select(nearest < 360.0 * DEGREE, sum_in_way_ends, sum_in_way_ends_2),
+                        select(nearest < 180.0 * DEGREE, sum_in_way_ends, 180.0 * DEGREE),
+                    )
                 )
             )
             start_minus_q6 = start - q6
@@ -1777,7 +1782,7 @@ class ArrayPrograms(Programs):
                 fits
                 & meets_pose
                 & (way_ahead < nearest)
-                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends_2)))
             )
             nearest_now = select(is_better, way_ahead, nearest)
             is_shortest = (stage == 1) & (trials >= 11)
@@ -1826,7 +1831,7 @@ class ArrayPrograms(Programs):
             is_over = (
                 (passes_left <= 0)
                 | (way_ends & (opposite(turns_back)))
-                | (onward & (next_stage == 0) & (nearest_now < 9.0))
+                | (onward & (next_stage == 0) & (nearest_now <= 2e-7 + place_plus_width))
             )
             direction_next = select(turns_back, -1, direction)
             place_next = select(
