@@ -159,7 +159,7 @@ def _searched(kin: Kinematics, samples: Samples, search: Search) -> Slots:
     other is asked for.
     """
     if search.is_eliminated:
-        return every_root(kin, samples, _commands(kin, samples))
+        return every_root(kin, samples.values | _commands(kin, samples))
     return _around(kin, samples, search.joint)
 
 

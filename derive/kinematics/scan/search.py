@@ -57,6 +57,10 @@ MOST_PASSES = 1500
 """The passes of the search, at most: 30 to 110 at a random pose; of 5,400 poses next to straight wrists and folded
 elbows two took more than 1,000, and none more than 1,410.
 """
+MOST_WHERE_ELIMINATED, COST_WHERE_ELIMINATED = 4000, 2
+"""The same for joints that are eliminated, and what a stall costs: a start may lead to any root, and no sign of a step
+tells two that nearly join.
+"""
 _LOOKING, _SHORTENING, _SETTLING, _MEETING = map(sp.Integer, range(4))
 """What the search is at: it looks for a part, for where a length is shortest, for a joint value, for the closure."""
 _STAGE, _PLACE, _WIDTH = count("stage"), real("place"), real("width")
@@ -94,7 +98,8 @@ class Steps:
 def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Symbol]) -> Program:
     """The search. arguments: those of its steps that do not change in it."""
     assert mechanism.search is not None
-    joints = [j.symbol for j in mechanism.solved_joints]
+    joints, eliminated = [j.symbol for j in mechanism.solved_joints], mechanism.search.is_eliminated
+    most = MOST_WHERE_ELIMINATED if eliminated else MOST_PASSES
     lengths = lengths_of(steps.trial)
     body = (
         *_looked(steps.look, arguments),
@@ -103,9 +108,9 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         *_next_start(lengths, SIDE in steps.trial.inputs),
         *_ends(),
     )
-    begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(MOST_PASSES)}
+    begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(most)}
     begin |= {_PLACE: Select(ONWARD, AHEAD, _ZERO), _MIRRORED: sp.false, **dict.fromkeys(_SETTLED, _FAR)}
-    following = _following(joints)
+    following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
     named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
     is_always = mechanism.search.where is None
     loop = Iterate(
@@ -114,7 +119,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         step=(*body, *named),
         following=tuple(let.name for let in named),
         done=flag("is_over") if is_always else sp.Or(sp.Not(LOOKED_FOR), flag("is_over")),
-        limit=MOST_PASSES + 1,
+        limit=most + 1,
         otherwise=None,
         note="one step of the search",
     )
@@ -256,7 +261,7 @@ def _ends() -> Iterator[Let]:
     yield Let(flag("is_over"), sp.Or(is_done, is_found, sp.Le(_PASSES_LEFT, 0)))
 
 
-def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
+def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Symbol, sp.Expr]:
     """The state in the next pass."""
     looks, passes_by = _is_at(_LOOKING), sp.Gt(_WIDTH, 0)
     wider = Select(passes_by, Select(is_narrow(_WIDTH), 8, 2) * _WIDTH, Select(IS_ROUNDING, FIRST, _ZERO))
@@ -265,7 +270,7 @@ def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
     place = Select(flag("part_is_done"), _PLACE + _WIDTH, Select(steps, _PLACE + SAFE, _PLACE))
     begins = sp.Or(flag("begins"), flag("is_shortest"))
     first, onward = trials_begun(real("place_of_start")), trials_go_on(_is_at(_SHORTENING))
-    step = Select(sp.Gt(ERROR, STALLED * _BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
+    step = Select(sp.Gt(ERROR, STALLED * _BEFORE), sp.Integer(cost_of_a_stall), _ONE)
     is_new = sp.Or(flag("is_near"), flag("mirrors"))
     found: dict[sp.Symbol, sp.Expr] = {
         _STAGE: count("next_stage"),

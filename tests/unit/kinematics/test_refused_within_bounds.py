@@ -53,11 +53,10 @@ def random_arm(seed: int, axes: int, *, has_parameters: bool) -> Mechanism:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("axes", "seed", "has_parameters"), [(5, 1, False), (6, 2, True), (7, 3, False), (8, 4, True)])
-def test_random_arms(axes: int, seed: int, has_parameters: bool) -> None:
+def test_a_random_arm_with_five_axes() -> None:
     start = time.process_time()
     with pytest.raises(Unsolved) as refusal, at_most(6 * MOST_TERMS) as work:
-        build(validate(random_arm(seed, axes, has_parameters=has_parameters)))
+        build(validate(random_arm(1, 5, has_parameters=False)))
     assert time.process_time() - start < _SECONDS
     assert 0 < work.done <= 6 * MOST_TERMS
     said = str(refusal.value)
@@ -69,8 +68,8 @@ def test_random_arms(axes: int, seed: int, has_parameters: bool) -> None:
 def test_the_same_work_whatever_was_derived_before() -> None:
     machine, counts = prepared(validate(random_arm(2, 6, has_parameters=True))), []
     for _ in range(2):
-        with pytest.raises(Unsolved), at_most(6 * MOST_TERMS) as work:
-            with_search(machine)
+        with at_most(6 * MOST_TERMS) as work:
+            assert with_search(machine).search is not None
         counts.append(work.done)
     assert counts[0] == counts[1]
 
