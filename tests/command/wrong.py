@@ -125,15 +125,14 @@ WRONG: dict[str, str] = {
     "no subproblem determines …": changed(
         SCARA,
         ("import Rz,", "import Rx, Rz,"),
-        ("MECHANISM =", 'A5, A6, A7 = (rotary(name, "turn") for name in ("A5", "A6", "A7"))\nMECHANISM ='),
+        ("MECHANISM =", 'A5, A6 = (rotary(name, "turn") for name in ("A5", "A6"))\nMECHANISM ='),
         (
             "Tx(L2) * Tz(HEIGHT + A3) * Rz(A4),",
-            "Tx(L2) * Rx(0.7) * Rz(A4) * Tx(90) * Rx(1.1) * Rz(A5) * Tx(50) * Tz(40) * Rx(0.9) * Rz(A6) * Tx(60) "
-            "* Rx(1.3) * Rz(A7) * Tz(30),",
+            "Tx(L2) * Rx(0.7) * Rz(A4) * Tx(90) * Rx(1.1) * Rz(A5) * Tx(50) * Tz(40) * Rx(0.9) * Rz(A6) * Tx(60),",
         ),
         ("Tx(L1) * ", "Tx(L1) * Rx(0.4) * Tz(70) * "),
-        ("joints=(A1, A2, A3, A4)", "joints=(A1, A2, A4, A5, A6, A7)"),
-        (", Turning.ABOUT_Z),", ", Turning.FULL),"),
+        ("joints=(A1, A2, A3, A4)", "joints=(A1, A2, A4, A5, A6)"),
+        (", Turning.ABOUT_Z),", ", Turning.DIRECTION),"),
         ('branches=(branch("elbow", sin(A2), right=+1, left=-1),),', ""),
     ),
     "with offset_interface=False it could be built, but for a point off the flange …": changed(

@@ -14,18 +14,20 @@ NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.0000001e9, -1.0000
 
 
 def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
-    """The determinant, and the solution: arrays of six rows, whatever lies beyond the equations."""
+    """The determinant, and the solution: arrays of six rows or of 18, whatever lies beyond the equations."""
     size, columns = right.shape
-    tables = [[[math.nan] * 6 for _ in range(6)] for _ in range(2)]
+    rows, wide = (6, 6) if size <= 6 else (18, 10)
+    tables = [[[math.nan] * width for _ in range(rows)] for width in (rows, wide)]
     for table, filled in zip(tables, (matrix, right), strict=True):
         for row, values in enumerate(filled.tolist()):
             table[row][: len(values)] = values
     flat = [[value for row in table for value in row] for table in tables]
-    determinant = LIBRARY.function("Softkin_Solve")(*flat, size, columns)
-    return determinant, np.array(flat[1]).reshape(6, 6)[:size, :columns]
+    function = LIBRARY.function("Softkin_Solve" if rows == 6 else "Softkin_SolveMany")
+    determinant = function(*flat, size, columns)
+    return determinant, np.array(flat[1]).reshape(rows, wide)[:size, :columns]
 
 
-@pytest.mark.parametrize("size", range(1, 7))
+@pytest.mark.parametrize("size", [*range(1, 7), 8, 12, 16, 18])
 def test_solve(size: int) -> None:
     """The solution and the determinant of a linear system are those of NumPy."""
     rng = np.random.default_rng(size)
@@ -33,7 +35,7 @@ def test_solve(size: int) -> None:
         for _ in range(20):
             matrix, right = rng.normal(size=(size, size)), rng.normal(size=(size, columns))
             determinant, solution = solved(matrix, right)
-            assert determinant == pytest.approx(np.linalg.det(matrix), rel=1e-9, abs=1e-12)
+            assert determinant == pytest.approx(np.linalg.det(matrix), rel=1e-8, abs=1e-12)
             np.testing.assert_allclose(matrix @ solution, right, atol=1e-8)
 
 

@@ -92,7 +92,7 @@ def solve_searched(stated: Mechanism, mechanism: Mechanism) -> Scanned:
 
 def _eliminated(mechanism: Mechanism) -> Mechanism | None:
     """The mechanism with a search whose other joints are eliminated; None where that is impossible."""
-    found = elimination_of(mechanism, pose_at_axes(mechanism))
+    found = elimination_of(mechanism)
     if found is None:
         return None
     side = crossing("crossing", positive=+1, negative=-1)

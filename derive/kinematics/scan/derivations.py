@@ -73,7 +73,7 @@ def solve_both(mechanism: Mechanism) -> Scanned:
 def _by_elimination(mechanism: Mechanism, forward: Forward) -> Scanned:
     """A trial without steps, and the elimination that takes their place."""
     assert mechanism.search is not None
-    elimination = elimination_of(mechanism, forward, mechanism.search.joint)
+    elimination = elimination_of(mechanism, mechanism.search.joint)
     if elimination is None:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, the other joints are not eliminated")
     trial = without_steps(mechanism, mechanism.search.joint)

@@ -44,9 +44,6 @@ def nominal(value: str) -> str:
     return written(f'L1 = length("link_1", "link", nominal={value})')
 
 
-SIX = "(A1, A2, A3, A4, A5, A6)"
-GENERAL = ", ".join(f"(A{k}, L1, L2, {twist})" for k, twist in enumerate((0.7, 1.1, 0.4, 1.3, 0.9, 0.3), 1))
-
 FAULTS = {
     "a name with a typing error": (written(chain=CHAIN.replace("L2", "L22")), ":9: NameError: name 'L22' is not"),
     "a parenthesis too few": (written(chain="Rz(A1 * Tx(L1"), "SyntaxError: '(' was never closed"),
@@ -197,14 +194,9 @@ FAULTS = {
         "TypeError: a chain is a product of frames, not a number: as in Rz(A1) * Tx(L1)",
     ),
     "a character of zero": (written() + "A9 = 1\0", ":10: the line holds a byte that is 0"),
-    "six axes at any angles": (
-        written(joints=SIX, chain=f"denavit_hartenberg({GENERAL})", task='Task("xyz", Turning.FULL)', branches=""),
-        "no subproblem determines a1, a2, a3, a4, a5, a6: 6 unknowns in 3 equations (x, y, z) and the comm",
-    ),
 }
 
 
-@pytest.mark.slow("six axes")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
     """One sentence that names the line or the part, and what is wrong; never an error of the compiler."""

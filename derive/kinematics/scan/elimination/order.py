@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism
-from derive.equations.axes import Forward
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.ir.interpret import Array, evaluate
+from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.scan.elimination.line import SIZE
 from derive.kinematics.scan.elimination.numbers import Numbers, numbers_of
 from derive.kinematics.scan.elimination.ring import JOINTS, Ring, ring_of
 from derive.kinematics.scan.samples import samples_of
+from derive.work import counted
 
 SEARCHED, FREE = 2, 5
 """The place of c, the joint that is searched, and of f, whose axis is the line."""
@@ -92,12 +93,13 @@ class _Found:
         return self.steepness - _DIGITS * _SHAPES.index(self.elimination.highest)
 
 
-def elimination_of(mechanism: Mechanism, forward: Forward, searched: Joint | None = None) -> Elimination | None:
+@counted
+def elimination_of(mechanism: Mechanism, searched: Joint | None = None) -> Elimination | None:
     """The best elimination of an arm; None for a mechanism that has none. searched: the joint, where it is given."""
     ring = ring_of(mechanism)
     if ring is None:
         return None
-    values: dict[str, Array] = samples_of(mechanism, forward, _POSES)
+    values: dict[str, Array] = samples_of(mechanism, pose_at_axes(mechanism), _POSES)
     for let in (*fixed_lets(mechanism), *ring.lets):
         values[let.name.name] = np.asarray(evaluate(let.value, values))
     return best_order(ring, values, searched)
