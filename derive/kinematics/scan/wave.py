@@ -84,7 +84,7 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
         done=sp.Or(sp.Not(LOOKED_FOR), is_last) if both.closed is not None else is_last,
         limit=points + 1,
         otherwise=None,
-        note="the residuals of all branches, multiplied, at equal distances around the circle",
+        note=f"{_WHAT[both.eliminated is not None]}, at equal distances around the circle",
     )
     own = names_of(degree)
     beyond = [n for n in names if n not in own]
@@ -96,6 +96,7 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     ), degree
 
 
+_WHAT = ("the residuals of all branches, multiplied", "the determinant that vanishes where the arm closes")
 _Sampled = tuple[tuple[Statement, ...], Sequence[Let | Solve], sp.Expr, int]
 """Statements that are run once; those that compute the wave at an angle; its value, and its degree."""
 
