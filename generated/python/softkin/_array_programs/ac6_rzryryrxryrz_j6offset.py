@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8613
+    VALUES = 8629
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1508,6 +1508,7 @@ class ArrayPrograms(Programs):
             wave_sin_8,
         ) = given
         sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        value_in_way_ends = select(onward, sum_in_way_ends, 180.0 * DEGREE)
         # one step of the search
         (
             stage,
@@ -1760,26 +1761,10 @@ class ArrayPrograms(Programs):
             way_ends = (
                 (stage == 0)
                 & (width <= 0.0)
-                & (
-                    place
-                    >= select(onward, sum_in_way_ends, select(nearest < 180.0 * DEGREE, 2e-7 + nearest, 180.0 * DEGREE))
-                )
+                & (place >= select(nearest < value_in_way_ends, 2e-7 + nearest, value_in_way_ends))
             )
-            start_minus_q6 = start - q6
-            way_ahead = select(
-                onward,
-                1e-7
-                + 180.0 * DEGREE
-                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
-                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
-            )
-            is_better = (
-                fits
-                & meets_pose
-                & (way_ahead < nearest)
-                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
-            )
-            nearest_now = select(is_better, way_ahead, nearest)
+            turns_back = way_ends & (opposite(onward)) & (direction > 0)
+            is_over = (passes_left <= 0) | (way_ends & (opposite(turns_back)))
             is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
@@ -1802,6 +1787,21 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 15, number_of_start_plus_one, 0),
                 ),
             )
+            start_minus_q6 = start - q6
+            way_ahead = select(
+                onward,
+                1e-7
+                + 180.0 * DEGREE
+                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
+                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
+            )
+            is_better = (
+                fits
+                & meets_pose
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
+            )
+            nearest_now = select(is_better, way_ahead, nearest)
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends & (opposite(is_nearest)) & (side > 0) & (is_nearest | (next_number == 0))
             part_is_done = start_ends & (opposite(side_ends)) & (is_nearest | (next_number == 0))
@@ -1821,12 +1821,6 @@ class ArrayPrograms(Programs):
                         0,
                     ),
                 ),
-            )
-            turns_back = way_ends & (opposite(onward)) & (direction > 0)
-            is_over = (
-                (passes_left <= 0)
-                | (way_ends & (opposite(turns_back)))
-                | (onward & (next_stage == 0) & (nearest_now < 9.0))
             )
             direction_next = select(turns_back, -1, direction)
             place_next = select(
