@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset f4d0abcee072b5eb"
+    KEY = "ac6_rzryryrxryrz_j6offset 2a44ef5e58234482"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -490,16 +490,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
             factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
             r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
-            factor_301_part = (
+            factor_210_part = (
                 -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
             )
-            factor_302_part = (
-                factor_301_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            factor_211_part = (
+                factor_210_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_302_root_1_part = (
+            factor_211_root_1_part = (
                 2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_305_root_1_part = factor_302_part * factor_34_root_1_part + factor_302_root_1_part * factor_34_part
+            factor_214_root_1_part = factor_211_part * factor_34_root_1_part + factor_211_root_1_part * factor_34_part
             factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
             product_in_factor_151_part = factor_34_part * factor_47_root_3_part
             factor_151_part = factor_109_root_3_part * product_in_factor_151_part
@@ -577,18 +577,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r11_from_q123_part = factor_174_part + factor_178_part
             factor_202_part = r11_from_q123_part * sin_q6_tried
             r12_from_q123_before_q6_part = factor_198_part + factor_202_part
-            factor_308_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
-            product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part
-            factor_312_part = product_310_root_1_part * product_310_root_1_part
-            factor_313_part = -factor_312_part * factor_8_part
-            factor_304_part = -factor_302_root_1_part * product_in_factor_154_part
-            factor_305_part = factor_304_part + factor_302_part * factor_34_part
-            factor_307_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
-            factor_308_part = factor_307_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
-            product_310_part = factor_308_part - factor_305_part
-            factor_314_part = product_310_part * product_310_part
-            product_315_part = factor_314_part - factor_313_part
-            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_315_part
+            factor_217_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_219_root_1_part = factor_217_root_1_part - factor_214_root_1_part
+            factor_221_part = product_219_root_1_part * product_219_root_1_part
+            factor_222_part = -factor_221_part * factor_8_part
+            factor_213_part = -factor_211_root_1_part * product_in_factor_154_part
+            factor_214_part = factor_213_part + factor_211_part * factor_34_part
+            factor_216_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_217_part = factor_216_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_219_part = factor_217_part - factor_214_part
+            factor_223_part = product_219_part * product_219_part
+            product_224_part = factor_223_part - factor_222_part
+            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_224_part
             level = 0.5 * taken
             cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
             sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
