@@ -192,8 +192,8 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       factor_132_root_1_root_3_part, factor_142_root_1_root_3_part, sin_q23_root_1_root_3_part,
       factor_190_root_1_root_3_part, r12_from_q123_root_1_root_3_part, factor_198_root_1_root_3_part,
       factor_176_root_1_root_3_part, factor_178_root_1_root_3_part, r11_from_q123_root_1_root_3_part,
-      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_301_part,
-      factor_302_part, factor_302_root_1_part, factor_305_root_1_part, factor_150_part,
+      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_210_part,
+      factor_211_part, factor_211_root_1_part, factor_214_root_1_part, factor_150_part,
       product_in_factor_151_part, factor_151_part, product_in_factor_154_part, product_in_factor_154_part_2,
       factor_154_part, factor_156_part, factor_160_part, product_in_factor_161_part, factor_161_part,
       product_in_factor_163_part, factor_163_part, factor_166_part, cos_q23_part, factor_188_root_1_part,
@@ -207,8 +207,8 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       factor_127_part, factor_129_part, factor_132_part, factor_136_part, factor_138_part, factor_140_part,
       factor_142_part, sin_q23_part, factor_190_part, r12_from_q123_part, factor_198_part, factor_174_part,
       factor_178_part, r11_from_q123_part, factor_202_part, r12_from_q123_before_q6_part,
-      factor_308_root_1_part, product_310_root_1_part, factor_312_part, factor_313_part, factor_304_part,
-      factor_305_part, factor_307_part, factor_308_part, product_310_part, factor_314_part, product_315_part,
+      factor_217_root_1_part, product_219_root_1_part, factor_221_part, factor_222_part, factor_213_part,
+      factor_214_part, factor_216_part, factor_217_part, product_219_part, factor_223_part, product_224_part,
       taken, level, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, cos_5, sin_5, cos_6, sin_6, cos_7, sin_7,
       cos_8, sin_8, cos_9, sin_9, cos_10, sin_10;
   for (int pass = 0; pass < 22; pass += 1) {
@@ -342,13 +342,13 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part*sin_q6_tried;
     r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part
         + factor_202_root_1_root_3_part;
-    factor_301_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
+    factor_210_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_1_root_3_part;
-    factor_302_part = factor_301_part
+    factor_211_part = factor_210_part
         + r12_from_q123_before_q6_root_3_part*r12_from_q123_before_q6_root_3_part;
-    factor_302_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
+    factor_211_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_3_part;
-    factor_305_root_1_part = factor_302_part*factor_34_root_1_part + factor_302_root_1_part*factor_34_part;
+    factor_214_root_1_part = factor_211_part*factor_34_root_1_part + factor_211_root_1_part*factor_34_part;
     factor_150_part = -factor_109_root_1_part*product_in_factor_137_root_3_part;
     product_in_factor_151_part = factor_34_part*factor_47_root_3_part;
     factor_151_part = factor_109_root_3_part*product_in_factor_151_part;
@@ -410,18 +410,18 @@ static softkin_status find_compute_wave(const void *machine, const double *given
     r11_from_q123_part = factor_174_part + factor_178_part;
     factor_202_part = r11_from_q123_part*sin_q6_tried;
     r12_from_q123_before_q6_part = factor_198_part + factor_202_part;
-    factor_308_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
-    product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part;
-    factor_312_part = product_310_root_1_part*product_310_root_1_part;
-    factor_313_part = -factor_312_part*factor_8_part;
-    factor_304_part = -factor_302_root_1_part*product_in_factor_154_part;
-    factor_305_part = factor_304_part + factor_302_part*factor_34_part;
-    factor_307_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
-    factor_308_part = factor_307_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
-    product_310_part = factor_308_part - factor_305_part;
-    factor_314_part = product_310_part*product_310_part;
-    product_315_part = factor_314_part - factor_313_part;
-    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_315_part;
+    factor_217_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
+    product_219_root_1_part = factor_217_root_1_part - factor_214_root_1_part;
+    factor_221_part = product_219_root_1_part*product_219_root_1_part;
+    factor_222_part = -factor_221_part*factor_8_part;
+    factor_213_part = -factor_211_root_1_part*product_in_factor_154_part;
+    factor_214_part = factor_213_part + factor_211_part*factor_34_part;
+    factor_216_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
+    factor_217_part = factor_216_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
+    product_219_part = factor_217_part - factor_214_part;
+    factor_223_part = product_219_part*product_219_part;
+    product_224_part = factor_223_part - factor_222_part;
+    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_224_part;
     level = 0.5*taken;
     cos_2 = cos_q6_tried*cos_q6_tried - sin_q6_tried*sin_q6_tried;
     sin_2 = 2.0*cos_q6_tried*sin_q6_tried;
