@@ -38,6 +38,8 @@ _BEYOND = 2
 """The number of waves beyond the degree."""
 _MORE, _ROUNDING = 1000, sp.Float("1e-14")
 """The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
+_OF_TERMS, _LEAST = sp.Float("1e-16"), sp.Float("1e-12")
+"""The rounding of a value is this share of its terms, added over all values; products below this are rounding."""
 _MACHINES, _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 6, 96, 4, 16, 1e-10
 
 
@@ -62,10 +64,12 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
     samples, trial = _samples(both), trial_of_all_signs(both)
     found = product_of(trial.statements, trial.value, samples)
-    value, degree = _cleared(found, samples)
+    factor, degree = _cleared(found, samples)
     most = degree + _BEYOND
     points = 2 * most + 1
-    number, names = count("sample"), names_of(most)
+    number, names, size = count("sample"), names_of(most), real("size_of_terms")
+    bound = {let.name: let.value for let in found.statements}
+    terms = sp.Add.make_args(bound.get(found.value, found.value))
     lets, c, s = turned(most, TRIED)
     share = sp.Float(2.0 / points)
     parts = [real("level") * c[0], *(real("taken") * f for f in (*c[1:], *s[1:]))]
@@ -73,15 +77,20 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
         Let(TRIED, BEGIN + ToReal(number) * sp.Float(2.0 * np.pi / points)),
         *found.statements,
         *lets,
-        Let(real("taken"), share * value),
+        Let(real("cleared_by"), factor),
+        Let(real("taken"), share * real("cleared_by") * found.value),
         Let(real("level"), real("taken") / 2),
     ]
     is_last = sp.Ge(number, points)
     loop = Iterate(
-        state=(number, *names),
-        start=(sp.Integer(0),) * (1 + len(names)),
+        state=(number, size, *names),
+        start=(sp.Integer(0),) * (2 + len(names)),
         step=tuple(s for s in step if isinstance(s, Let)),
-        following=(number + 1, *(n + p for n, p in zip(names, parts, strict=True))),
+        following=(
+            number + 1,
+            size + sp.Abs(real("cleared_by")) * (_LEAST + sp.Add(*map(sp.Abs, terms))),
+            *(n + p for n, p in zip(names, parts, strict=True)),
+        ),
         done=sp.Or(sp.Not(LOOKED_FOR), is_last) if both.closed is not None else is_last,
         limit=points + 1,
         otherwise=None,
@@ -91,7 +100,7 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     beyond = [n for n in names if n not in own]
     fifth = Let(FIFTH, sp.Add(*[_fifth(k, degree) * sp.Abs(n) for k, n in enumerate(own) if k]))
     outputs = [Output(n.name, n) for n in (*own, NOISE, FIFTH)]
-    program = normalise("compute_wave", (loop, *_noise(own, beyond), fifth), outputs)
+    program = normalise("compute_wave", (loop, *_noise(own, beyond, size), fifth), outputs)
     return replace(
         program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
     ), degree
@@ -102,10 +111,12 @@ def _fifth(place: int, degree: int) -> sp.Expr:
     return sp.Float((place if place <= degree else place - degree) ** 5 / 120)
 
 
-def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:
-    """The bound of the rounding of the wave."""
+def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol], size: sp.Symbol) -> Iterator[Let]:
+    """The bound of the rounding of the wave. size: that of what it is the difference of, which may be as good as equal
+    everywhere.
+    """
     largest: sp.Expr = real("rounding_0")
-    yield Let(largest, _ROUNDING * sp.Add(*map(sp.Abs, own)))
+    yield Let(largest, _ROUNDING * sp.Add(*map(sp.Abs, own)) + _OF_TERMS * size)
     for k, n in enumerate(beyond, 1):
         yield Let(real(f"rounding_{k}"), larger(_MORE * sp.Abs(n), largest))
         largest = real(f"rounding_{k}")
@@ -130,7 +141,7 @@ def _samples(both: Scanned) -> dict[str, Array]:
 
 
 def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
-    """The product times the powers of its divisors that make its degree lowest, and this degree."""
+    """The powers of its divisors that make the degree of the product lowest, multiplied, and this degree."""
     known = dict(samples)
     for let in found.statements:
         known[let.name.name] = np.asarray(evaluate(let.value, known))
@@ -145,7 +156,7 @@ def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
     if best is None:
         raise Unsolved("the residual is no wave of a low degree")
     factors = [d**p for d, p in zip(found.divisors, best[2], strict=True)]
-    return sp.Mul(found.value, *factors), best[0]
+    return sp.Mul(*factors), best[0]
 
 
 def _degree(values: Array) -> int:
