@@ -158,10 +158,11 @@ def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Cal
     is_part = sp.Gt(_WIDTH, 0)
     ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, LONGEST))
     yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
-    # what is further away than the nearest root need not be looked at
-    away = Select(sp.Lt(_NEAREST, sp.pi), _NEAREST + 2 * AHEAD, sp.pi)
-    end = Select(ONWARD, _TURN - AHEAD, away)
-    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, end)))
+    # what is further away than the nearest root need not be looked at; one that is a little behind the start is a
+    # turn ahead
+    whole = Select(ONWARD, _TURN - AHEAD, sp.pi)
+    yield Let(real("end_of_way"), Select(sp.Lt(_NEAREST, whole), _NEAREST + Select(ONWARD, -2, 2) * AHEAD, whole))
+    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, real("end_of_way"))))
 
 
 def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterator[Let | Call]:
@@ -246,9 +247,8 @@ def _ends() -> Iterator[Let]:
     yield Let(count("next_stage"), stage)
     turns_back = sp.And(flag("way_ends"), sp.Not(ONWARD), sp.Gt(DIRECTION, 0))
     yield Let(flag("turns_back"), turns_back)
-    is_found = sp.And(ONWARD, sp.Lt(real("nearest_now"), _FAR), sp.Eq(count("next_stage"), _LOOKING))
     is_done = sp.And(flag("way_ends"), sp.Not(flag("turns_back")))
-    yield Let(flag("is_over"), sp.Or(is_done, is_found, sp.Le(_PASSES_LEFT, 0)))
+    yield Let(flag("is_over"), sp.Or(is_done, sp.Le(_PASSES_LEFT, 0)))
 
 
 def _following(joints: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:

@@ -1293,7 +1293,8 @@ static softkin_status find_root(const void *machine, const double *given, double
   const int wanted_crossing = (int)given[19], wanted_elbow = (int)given[20],
       wanted_shoulder = (int)given[21], wanted_wrist = (int)given[22];
   const bool looked_for = given[13] != 0.0, onward = given[15] != 0.0;
-  const double sum_in_way_ends = 360.0*SOFTKIN_DEGREE - 1e-7;
+  const double sum_in_end_of_way = 360.0*SOFTKIN_DEGREE - 1e-7;
+  const double value_in_end_of_way = onward ? sum_in_end_of_way : 180.0*SOFTKIN_DEGREE;
   /* one step of the search */
   int stage = 0;
   int direction = 1;
@@ -1343,7 +1344,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
       begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
-      moved_q5, moved_q6, start_minus_q6, way_ahead, nearest_now, moved, place_next, width_next,
+      moved_q5, moved_q6, end_of_way, moved, start_minus_q6, way_ahead, nearest_now, place_next, width_next,
       shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now, error_before_next, spread,
       spread_times_1_by_4, best_now_plus_spread_times_1_by_4, at_minus_growth_by_bend_now,
       value_in_shortening_place, shortening_place, sum_in_place_of_start, value_in_place_of_start,
@@ -1354,9 +1355,9 @@ static softkin_status find_root(const void *machine, const double *given, double
       kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
-  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends, is_better,
-      is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
-      seeks_length, turns_back, is_over, was_mirrored_next;
+  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends,
+      turns_back, is_over, is_shortest, mirrors, part_ends, start_ends, is_better, is_nearest, side_ends,
+      part_is_done, begins, is_first, seeks_length, was_mirrored_next;
   for (int pass = 0; pass < 1501; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
@@ -1448,17 +1449,10 @@ static softkin_status find_root(const void *machine, const double *given, double
       }
     }
     fits = results_of_5[0] != 0.0;
-    way_ends = (stage == 0) && (width <= 0.0)
-        && (place_ >= (onward ? sum_in_way_ends
-        : (nearest < 180.0*SOFTKIN_DEGREE ? 2e-7 + nearest : 180.0*SOFTKIN_DEGREE)));
-    start_minus_q6 = start_ - q6;
-    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
-        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
-        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
-        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
-    is_better = fits && meets_pose && (way_ahead < nearest)
-        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends)));
-    nearest_now = is_better ? way_ahead : nearest;
+    end_of_way = nearest < value_in_end_of_way ? nearest + 1e-7*(onward ? -2.0 : 2.0) : value_in_end_of_way;
+    way_ends = (stage == 0) && (place_ >= end_of_way) && (width <= 0.0);
+    turns_back = way_ends && (!onward) && (direction > 0);
+    is_over = (passes_left <= 0) || (way_ends && (!turns_back));
     is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
         + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
@@ -1470,6 +1464,14 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 15 ? number_of_start_plus_one : 0));
+    start_minus_q6 = start_ - q6;
+    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
+        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
+    is_better = fits && meets_pose && (way_ahead < nearest)
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
+    nearest_now = is_better ? way_ahead : nearest;
     is_nearest = nearest_now <= 2e-7 + place_;
     side_ends = start_ends && (!is_nearest) && (side > 0) && (is_nearest || (next_number == 0));
     part_is_done = start_ends && (!side_ends) && (is_nearest || (next_number == 0));
@@ -1480,9 +1482,6 @@ static softkin_status find_root(const void *machine, const double *given, double
     next_stage = is_near || mirrors || ((!steps_end) && (stage == 3)) ? 3
         : (seeks_length || ((!is_shortest) && (stage == 1)) ? 1
         : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
-    turns_back = way_ends && (!onward) && (direction > 0);
-    is_over = (passes_left <= 0) || (way_ends && (!turns_back))
-        || (onward && (next_stage == 0) && (nearest_now < 9.0));
     direction_next = turns_back ? -1 : direction;
     place_next = turns_back ? 0.0
         : (part_is_done ? place_plus_width

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 678629 additions, 895644 multiplications, 34612 divisions, 18014 square roots, 36068 sines
-    inverse, all 16 branches: 10858337 additions, 14330400 multiplications, 553792 divisions, 288224 square
+    inverse: 678629 additions, 894144 multiplications, 34612 divisions, 18014 square roots, 36068 sines
+    inverse, all 16 branches: 10858337 additions, 14306400 multiplications, 553792 divisions, 288224 square
     roots, 577088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -126,7 +126,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 2a44ef5e58234482"
+    KEY = "ac6_rzryryrxryrz_j6offset 3b50cedbf6f0d3ec"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1665,7 +1665,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        sum_in_end_of_way = 360.0 * DEGREE - 1e-7
+        value_in_end_of_way = sum_in_end_of_way if onward else 180.0 * DEGREE
         # one step of the search
         (
             stage,
@@ -1926,32 +1927,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (fits,) = found
             else:
                 (fits,) = (False,)
-            way_ends = (
-                (stage == 0)
-                and (width <= 0.0)
-                and (
-                    place
-                    >= (sum_in_way_ends if onward else (2e-7 + nearest if nearest < 180.0 * DEGREE else 180.0 * DEGREE))
-                )
+            end_of_way = (
+                nearest + 1e-7 * (-2.0 if onward else 2.0) if nearest < value_in_end_of_way else value_in_end_of_way
             )
-            start_minus_q6 = start - q6
-            way_ahead = (
-                1e-7
-                + 180.0 * DEGREE
-                + arctan2(
-                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
-                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
-                )
-                if onward
-                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
-            )
-            is_better = (
-                fits
-                and meets_pose
-                and (way_ahead < nearest)
-                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_way_ends)))
-            )
-            nearest_now = way_ahead if is_better else nearest
+            way_ends = (stage == 0) and (place >= end_of_way) and (width <= 0.0)
+            turns_back = way_ends and (not onward) and (direction > 0)
+            is_over = (passes_left <= 0) or (way_ends and (not turns_back))
             is_shortest = (stage == 1) and (trials >= 11)
             moved = (
                 abs(met_from_q1 - q1)
@@ -1974,6 +1955,24 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     else (number_of_start_plus_one if number_of_start < 15 else 0)
                 )
             )
+            start_minus_q6 = start - q6
+            way_ahead = (
+                1e-7
+                + 180.0 * DEGREE
+                + arctan2(
+                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                )
+                if onward
+                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
+            )
+            is_better = (
+                fits
+                and meets_pose
+                and (way_ahead < nearest)
+                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = way_ahead if is_better else nearest
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends and (not is_nearest) and (side > 0) and (is_nearest or (next_number == 0))
             part_is_done = start_ends and (not side_ends) and (is_nearest or (next_number == 0))
@@ -1993,12 +1992,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         else 0
                     )
                 )
-            )
-            turns_back = way_ends and (not onward) and (direction > 0)
-            is_over = (
-                (passes_left <= 0)
-                or (way_ends and (not turns_back))
-                or (onward and (next_stage == 0) and (nearest_now < 9.0))
             )
             direction_next = -1 if turns_back else direction
             place_next = (

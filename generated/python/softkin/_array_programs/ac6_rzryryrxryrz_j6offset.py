@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8613
+    VALUES = 8645
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1507,7 +1507,8 @@ class ArrayPrograms(Programs):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends = 360.0 * DEGREE - 1e-7
+        sum_in_end_of_way = 360.0 * DEGREE - 1e-7
+        value_in_end_of_way = select(onward, sum_in_end_of_way, 180.0 * DEGREE)
         # one step of the search
         (
             stage,
@@ -1757,29 +1758,12 @@ class ArrayPrograms(Programs):
                 (False,),
             )
             (fits,) = found
-            way_ends = (
-                (stage == 0)
-                & (width <= 0.0)
-                & (
-                    place
-                    >= select(onward, sum_in_way_ends, select(nearest < 180.0 * DEGREE, 2e-7 + nearest, 180.0 * DEGREE))
-                )
+            end_of_way = select(
+                nearest < value_in_end_of_way, nearest + 1e-7 * select(onward, -2.0, 2.0), value_in_end_of_way
             )
-            start_minus_q6 = start - q6
-            way_ahead = select(
-                onward,
-                1e-7
-                + 180.0 * DEGREE
-                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
-                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
-            )
-            is_better = (
-                fits
-                & meets_pose
-                & (way_ahead < nearest)
-                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends)))
-            )
-            nearest_now = select(is_better, way_ahead, nearest)
+            way_ends = (stage == 0) & (place >= end_of_way) & (width <= 0.0)
+            turns_back = way_ends & (opposite(onward)) & (direction > 0)
+            is_over = (passes_left <= 0) | (way_ends & (opposite(turns_back)))
             is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
@@ -1802,6 +1786,21 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 15, number_of_start_plus_one, 0),
                 ),
             )
+            start_minus_q6 = start - q6
+            way_ahead = select(
+                onward,
+                1e-7
+                + 180.0 * DEGREE
+                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
+                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
+            )
+            is_better = (
+                fits
+                & meets_pose
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = select(is_better, way_ahead, nearest)
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends & (opposite(is_nearest)) & (side > 0) & (is_nearest | (next_number == 0))
             part_is_done = start_ends & (opposite(side_ends)) & (is_nearest | (next_number == 0))
@@ -1821,12 +1820,6 @@ class ArrayPrograms(Programs):
                         0,
                     ),
                 ),
-            )
-            turns_back = way_ends & (opposite(onward)) & (direction > 0)
-            is_over = (
-                (passes_left <= 0)
-                | (way_ends & (opposite(turns_back)))
-                | (onward & (next_stage == 0) & (nearest_now < 9.0))
             )
             direction_next = select(turns_back, -1, direction)
             place_next = select(
