@@ -164,10 +164,11 @@ def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Cal
     is_part = sp.Gt(_WIDTH, 0)
     ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, LONGEST))
     yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
-    # what is further away than the nearest root need not be looked at
-    farthest = Select(ONWARD, _TURN - AHEAD, sp.pi)
-    end = Select(sp.Lt(_NEAREST, farthest), _NEAREST + 2 * AHEAD, farthest)
-    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, end)))
+    # what is further away than the nearest root need not be looked at; one that is a little behind the start is a
+    # turn ahead
+    whole = Select(ONWARD, _TURN - AHEAD, sp.pi)
+    yield Let(real("end_of_way"), Select(sp.Lt(_NEAREST, whole), _NEAREST + Select(ONWARD, -2, 2) * AHEAD, whole))
+    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, real("end_of_way"))))
 
 
 def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterator[Let | Call]:
