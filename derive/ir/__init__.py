@@ -1,9 +1,7 @@
 """A program as data: symbols, statements and values, and how a program is checked, executed and rearranged.
 
-It may import `kept` and `work`, and no folder. `cells` and `roots` are also the text of two modules of the Python
-package.
+It may import `kept` and `work`, and no folder.
 
-cells: the cells of a root search, on arrays: how many roots a cell may hold, and where it is cut
 constants: the numerical constants of the product, except those of the root search
 graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
@@ -11,7 +9,6 @@ passes: passes over programs: aliases folded, statements in the order of their u
 primitives: the functions that every language implements, and their values on arrays
 program: programs, their statements and their statuses
 reason: why a program refuses: what is at fault, what is wrong with it, and how much is missing
-roots: all roots of a trial along one joint, on arrays, found with `cells`
 statement: what all kinds of statements have in common
 symbols: every name that programs share, the signs of branches, and new names
 text: programs as plain text

@@ -4,7 +4,8 @@ It may import the folders from `ir` to `kinematics`.
 
 branch_meanings: the meanings of derived branches and assembly modes, in words and at one pose
 branch_stretches: parts of a branch that other branches share
-cost: the operations of a call in the worst case, and of one call of the self-test
+call_cost: the cost of one call: with every branch named, and of a case of the self-test
+cost: the cost of programs, and of every kind of call, in the worst case
 derived: the derivation, repeated for a reader
 reasons: the reasons of refusals in words
 reference_calls: the answers of the methods of a block, by the reference interpreter

@@ -18,7 +18,7 @@ from derive.ir.interpret import Array
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Bytes, Called, Case, Kinematics, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
-from derive.report.cost import with_operations
+from derive.report.call_cost import with_operations
 from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
 from derive.work import stage
 

@@ -791,7 +791,10 @@ static int roots_from(const softkin_roots *of, double begin, root *found) {
   }
   given[of->onward] = 1.0;
   given[of->start] = begin;
-  while (count < MOST_ROOTS && of->find(of->machine, given, results, NULL) == SOFTKIN_OK && results[0] != 0.0) {
+  while (count < MOST_ROOTS) {
+    if (of->find(of->machine, given, results, NULL) != SOFTKIN_OK || results[0] == 0.0) {
+      return count;
+    }
     left -= count > 0 ? results[1] : 0.0;
     if (left <= 0.0) {
       return count;

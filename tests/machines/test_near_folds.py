@@ -21,6 +21,9 @@ from tests.machines.searched_machines import POINTS
 pytestmark = pytest.mark.slow(*COSTLY)
 
 ARMS = {**OF_DEGREE_FOUR, **POINTS}
+OF_SIX = (-13.889951973798457, -55.73152638973063, -168.04705684081833, -166.04154918457357, 59.15287709485006,
+          -24.158613811209886)  # fmt: skip
+"""Joints (degrees) of an arm at a fold."""
 EVERY = pytest.mark.parametrize("name", ARMS)
 
 
@@ -91,3 +94,17 @@ def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
         found = [a for slot in solutions if slot.axes is not None for a in (slot.axes, *slot.others)]
         apart = [np.abs((np.subtract(a, axes) + 180.0) % 360.0 - 180.0).max() for a in found]
         assert min(apart) < max(0.1 * 10.0**decade, 5e-6), axes.tolist()
+
+
+def test_a_fold_hides_no_other_solution() -> None:
+    """All solutions are searched from a root that counts twice; found a little behind, it is a turn ahead."""
+    machine = made("arm with three parallel axes, the last two beside each other")
+    axes = machine.axes(np.array([OF_SIX]))[0]
+    frame = machine.robot.forward(tuple(axes))[0]
+    found = [
+        [np.array(a) for slot in machine.robot.inverse_all(frame, tuple(reference)) if slot.axes is not None
+         for a in (slot.axes, *slot.others)]
+        for reference in (axes, axes + 60.0, axes - 60.0)
+    ]  # fmt: skip
+    for other in (a for one in found[1:] for a in one):
+        assert min(np.abs((a - other + 180.0) % 360.0 - 180.0).max() for a in found[0]) < 1e-2

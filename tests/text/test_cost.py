@@ -19,7 +19,8 @@ from derive.kinematics.kinematics import Called
 from derive.kinematics.parameters import machine_parameters
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
-from derive.report.cost import Cost, cost_of, costs_of, expression_cost, open_slots, solve_cost, worst_inverse
+from derive.report.call_cost import open_slots, worst_inverse
+from derive.report.cost import Cost, cost_of, costs_of, expression_cost, solve_cost
 from derive.report.self_test import self_test
 from tests.mechanisms import catalogue, kinematics_of, named
 from tests.text.controller import OK, Controller

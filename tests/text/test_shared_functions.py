@@ -8,7 +8,6 @@ import pytest
 import sympy as sp
 from hypothesis import example, given
 from hypothesis import strategies as st
-from softkin import _root
 from softkin._configuration import turn_inside
 
 from derive.emit.st.contract import load
@@ -135,31 +134,6 @@ def test_the_turn_inside(axis: float, low: float, width: float) -> None:
         return  # where rounding decides
     expected = (max(inside) if axis > high else min(inside)) if inside else 0
     assert LIBRARY.function("Softkin_TurnInside")(axis, low, high) == turn_inside(axis, low, high) == expected
-
-
-_NUMBERS = st.floats(-10.0, 10.0)
-
-
-@given(ends=st.tuples(_NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS), width=st.floats(0.01, 2.0))
-@example((1.0, -4.0, 1.0, 4.0), 1.0)
-@example((1.0, -1.0, 1.0, 1.0), 1.0)
-@example((-1.0, 4.0, -1.0, -4.0), 1.0)
-@example((1.0, -1.0, 9.0, 1.0), 1.0)
-@example((1.0, 2.0, 1.0, 2.0), 1.0)
-@example((1.0, -9.0, -1.0, -9.0), 1.0)
-@example((1.0, 9.0, 1.0, 9.0), 1.0)
-@example((-1.0, -9.0, -1.0, -9.0), 1.0)
-@example((1.0, 9.0, -1.0, 9.0), 1.0)
-@example((0.1, -9.0, 1.0, -9.0), 1.0)
-@example((1.0, 1.0, 2.0, 1.0), 1.0)
-@example((1.0, 0.0, 2.0, 0.0), 1.0)
-def test_what_hides_two_roots(ends: tuple[float, float, float, float], width: float) -> None:
-    """Where the search cuts a cell: as on plain numbers in Python."""
-    assert LIBRARY.function("Softkin_TangentsMeet")(*ends, width) == pytest.approx(
-        _root._between(*ends, width), rel=1e-12
-    )
-    assert LIBRARY.function("Softkin_ComesBack")(*ends, width) == _root._comes_back(*ends, width)
-    assert LIBRARY.function("Softkin_HidesRoots")(*ends, width) == _root._hides_roots(*ends, width)
 
 
 def _centre(number: int) -> float:

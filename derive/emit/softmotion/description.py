@@ -20,7 +20,8 @@ from derive.geometry.pose import Screw, pose_of
 from derive.ir.constants import COINCIDENT, EXACT_ROTATION, ONE_TURN, ROTATION
 from derive.ir.program import Call, Status, shared
 from derive.kinematics.kinematics import Called, Kinematics
-from derive.report.cost import Bound, Cost, Costs, costs_of, open_slots, worst_inverse
+from derive.report.call_cost import open_slots, worst_inverse
+from derive.report.cost import Bound, Cost, Costs, costs_of
 from derive.report.reasons import workspace
 
 _WIDTH = 100

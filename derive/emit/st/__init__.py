@@ -16,7 +16,6 @@ refusal: how a method refuses
 refused_inputs: how the inputs of a block are refused, each with a text
 reserved: names that may not be declared
 rotation: the repair of the commanded rotation, and the part that a flange follows
-scan: the root search: a method that calls the programs of a trial
 shared: programs that several methods share, each as a private method
 stretches: values that one branch has computed and the next one reads
 """

@@ -22,8 +22,8 @@ _OF_THE_BLOCK = ("initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes
 
 TEMPLATE_LOCALS = frozenset(
     """
-    apart baseaxis column configbytes distance flange flangeaxis frame identity least middle nothing projected
-    relative rot rotation solution space status total
+    apart baseaxis configbytes flange flangeaxis frame identity nothing projected relative rot rotation solution
+    space status total
     """.split()
 )
 """The variables that the templates of methods declare."""

@@ -9,13 +9,13 @@ elimination/: six-axis arms of any shape, whose other joints follow from linear 
 guards: the conditions under which a trial is within reach
 inverse: the inverse: closed form and search in one program
 margins: the margins
-parts: parts of the circle in which the wave may vanish
-product: the residual multiplied over the signs of its roots
-programs: the trial, the joints at a joint value, the steps on the closure
+parts: a step around the circle on which the wave does not vanish
+product: the residual of a trial multiplied over the signs of all its roots
+programs: a trial, the joints that it gives, a step of all joints on the closure, and whether they are on the branch
 samples: poses of random machines, by which decisions are made
-search: the search for the root nearest to the reference, or the next one ahead
+search: one loop, each pass of which makes one step of what the search is at
 slopes: every value of a program, with its derivative by one input
-starts: the starts in a part of the circle
-tried: the trials in a part of the circle
-wave: the product, or the determinant of an elimination, as a sum of waves in the joint
+starts: the starts in a part of the circle in which the wave may vanish
+tried: the trials in a part: the shortest length, the least residual next to a start
+wave: the product, or the determinant of an elimination, as a sum of waves in the joint, and its rounding
 """

@@ -12,7 +12,7 @@ import sympy as sp
 
 from derive.equations.axes import finite, reference_value
 from derive.ir.passes import normalise
-from derive.ir.primitives import Atan2, Select
+from derive.ir.primitives import Atan2, Select, Wrap
 from derive.ir.program import Call, Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, cosine, real, sine
@@ -85,7 +85,7 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
     mechanism = both.mechanism
     assert mechanism.search is not None
     given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
-    given |= {START: reference_value(mechanism.search.joint), LOOKED_FOR: SEARCHED, ONWARD: sp.false}
+    given |= {START: Wrap(reference_value(mechanism.search.joint)), LOOKED_FOR: SEARCHED, ONWARD: sp.false}
     given |= {wanted(b): sigma(b) for b in mechanism.branches}
     given |= {reference_value(j): reference_value(j) for j in mechanism.joints}
     given |= {real(o.name): real(o.name) for o in wave_program(both)[0].outputs}

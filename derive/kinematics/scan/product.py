@@ -18,6 +18,7 @@ import numpy as np
 import sympy as sp
 
 from derive.ir.interpret import Array, evaluate
+from derive.ir.passes import needed_lets
 from derive.ir.primitives import Root, Select, ToReal
 from derive.ir.program import Let
 from derive.ir.symbols import is_count, real
@@ -46,7 +47,7 @@ def product_of(statements: Sequence[Let], residual: sp.Expr, samples: Mapping[st
     Raises `Unsolved` where a value is no fraction of products of roots.
     """
     algebra = _Algebra(dict(samples))
-    for s in statements:
+    for s in needed_lets(statements, [residual]):
         algebra.read(s)
     value = algebra.of(residual)
     for root in reversed(algebra.squares):
@@ -62,6 +63,8 @@ class _Algebra:
     known: dict[sp.Symbol, Value] = field(default_factory=dict)
     lets: list[Let] = field(default_factory=list)
     squares: dict[sp.Symbol, Value] = field(default_factory=dict)
+    within: Array = field(default_factory=lambda: np.ones((1, 1), dtype=bool))
+    """The samples at which every root is real."""
     divisors: list[sp.Symbol] = field(default_factory=list)
 
     def read(self, s: Let) -> None:
@@ -106,9 +109,11 @@ class _Algebra:
         return self._named(f"product_{len(self.lets)}", self._kept(difference))
 
     def _chosen(self, value: sp.Expr) -> sp.Expr:
-        """A value where nothing is singular: that of the side that all samples take."""
+        """A value where nothing is singular: that of the side that all samples take at which every root is real."""
         while isinstance(value, Select):
-            holds = np.asarray(evaluate(value.args[0], {name: np.real(v) for name, v in self.numbers.items()}))
+            said = np.asarray(evaluate(value.args[0], {name: np.real(v) for name, v in self.numbers.items()}))
+            holds = np.broadcast_to(said, np.broadcast_shapes(said.shape, self.within.shape))
+            holds = holds[np.broadcast_to(self.within, holds.shape)]
             if not (holds.all() or not holds.any()):
                 raise Unsolved(f"{value} has a choice")
             value = value.args[1] if holds.all() else value.args[2]
@@ -163,8 +168,15 @@ class _Algebra:
         below = value.get(_PLAIN, sp.Integer(0))
         if value.keys() - {_PLAIN} or below == 0:
             raise Unsolved("it is divided by what may vanish everywhere")
-        divisor = self._divisor(below)
+        divisor = self._not_zero(self._divisor(below))
         return {roots: f / divisor for roots, f in above.items()}
+
+    def _not_zero(self, divisor: sp.Expr) -> sp.Expr:
+        """The divisor, or 1 where it is zero: a power of it stands before the product there."""
+        name = real(f"{divisor}_or_1")
+        if name.name not in self.numbers:
+            self._bind(name, Select(sp.Gt(sp.Abs(divisor), 0), divisor, sp.Integer(1)))
+        return name
 
     def _divisor(self, value: sp.Expr) -> sp.Expr:
         """The name of what is divided by; an equal one has its name already."""
@@ -193,7 +205,8 @@ class _Algebra:
             raise Unsolved("too many roots stand in it")
         name = real(f"root_{len(self.squares) + 1}")
         self.squares[name] = square
-        self.numbers[name.name] = np.sqrt(np.asarray(self._number(self._symbol(square)), dtype=complex))
+        number = np.sqrt(np.asarray(self._number(self._symbol(square)), dtype=complex))
+        self.numbers[name.name], self.within = number, self.within & (number.imag <= _NOTHING * np.abs(number))
         return {frozenset((name,)): sp.Integer(1)}
 
     def _are_equal(self, first: Value, second: Value) -> bool:

@@ -38,6 +38,8 @@ AGREEMENT = real("agreement")
 FITS = "fits"
 ERROR = real("error")
 _SHRINKING = real("shrinking")
+IS_NEWTON = flag("is_newton")
+"""Whether a step is one of Newton's method."""
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
 _ZERO = sp.Integer(0)
@@ -139,21 +141,26 @@ def _named_jacobian(mechanism: Mechanism) -> tuple[list[Statement], sp.Matrix]:
 
 
 def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
-    """The step of damped least squares, J^T (J J^T + d)^-1 e, and a factor that keeps it within bounds."""
+    """The step of damped least squares, J^T (J J^T + d)^-1 e, or of Newton's method, J^-1 e, and a factor that keeps
+    it within bounds.
+
+    A square is rounded where the step that it would make is not: what changes the pose by less than the root of the
+    rounding moves by Newton's method alone.
+    """
     size, product = len(errors), jacobian * jacobian.T
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i, j in upper}
     multipliers = tuple(real(f"multiplier_{k + 1}") for k in range(size))
-    matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
+    pairs = [(i, j) for i in range(size) for j in range(size)]
+    matrix = tuple(Select(IS_NEWTON, jacobian[i, j], names[min(i, j), max(i, j)]) for i, j in pairs)
+    damped = jacobian.T * sp.Matrix(multipliers)
     damping, length = real("damping"), real("step_length")
     is_long = sp.Gt(length, LONGEST_STEP)
     return [
         Let(damping, larger(SHARE_OF_DAMPING * ERROR, LEAST_DAMPING)),
         *(Let(names[i, j], product[i, j] + (damping if i == j else 0)) for i, j in upper),
-        Solve(
-            multipliers, matrix, tuple(errors), None, "damped least squares: the shortest step that cancels the error"
-        ),
-        *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
+        Solve(multipliers, matrix, tuple(errors), None, "damped least squares, or the step that cancels the error"),
+        *(Let(s, Select(IS_NEWTON, m, value)) for s, m, value in zip(steps, multipliers, damped, strict=True)),
         Let(length, Root(sp.Add(*[step**2 for step in steps]))),
         Let(_SHRINKING, Select(is_long, LONGEST_STEP / Select(is_long, length, sp.Integer(1)), sp.Integer(1))),
     ]

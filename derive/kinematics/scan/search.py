@@ -22,13 +22,14 @@ from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
-from derive.kinematics.scan.programs import ERROR, FITS, FOUND, LOOKED_FOR, START, begun, moved_to
+from derive.kinematics.scan.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
 from derive.kinematics.scan.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
 from derive.kinematics.scan.tried import (
     AT,
     BEST_NOW,
     LEAST_NOW,
     ROOM,
+    SETTLED,
     better,
     lengths_of,
     newton_is_done,
@@ -75,7 +76,7 @@ _NEAR = sp.Float("1e-3")
 """In a narrow part steps on the closure begin only where the residual of the branch is at most this."""
 _ROOM = sp.Float("1e-6")
 """Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
-_SAME = sp.Float("1e-9")
+_SAME = sp.Float("1e-12")
 """Joint values this near (radians) are the same: from there the closure is met once. In a narrow part none are."""
 _MOVED = sp.Float("1e-8")
 """Joints are mirrored if the steps on the closure moved them by more than this (radians and lengths, added)."""
@@ -109,7 +110,12 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         *_ends(),
     )
     begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(most)}
-    begin |= {_PLACE: Select(ONWARD, AHEAD, _ZERO), _MIRRORED: sp.false, **dict.fromkeys(_SETTLED, _FAR)}
+    begin |= {
+        _PLACE: Select(ONWARD, AHEAD, _ZERO),
+        _MIRRORED: sp.false,
+        IS_NEWTON: sp.false,
+        **dict.fromkeys(_SETTLED, _FAR),
+    }
     following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
     named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
     is_always = mechanism.search.where is None
@@ -164,10 +170,11 @@ def _looked(look: Program, arguments: Sequence[sp.Symbol]) -> Iterator[Let | Cal
     is_part = sp.Gt(_WIDTH, 0)
     ends = sp.Or(sp.Not(IS_ROUNDING), sp.Ge(_WIDTH, LONGEST))
     yield Let(flag("part_ends"), sp.And(_is_at(_LOOKING), is_part, ends))
-    # what is further away than the nearest root need not be looked at
-    away = Select(sp.Lt(_NEAREST, sp.pi), _NEAREST + 2 * AHEAD, sp.pi)
-    end = Select(ONWARD, Select(sp.Lt(_NEAREST, _TURN), _NEAREST + 2 * AHEAD, _TURN - AHEAD), away)
-    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, end)))
+    # what is further away than the nearest root need not be looked at; one that is a little behind the start is a
+    # turn ahead
+    whole = Select(ONWARD, _TURN - AHEAD, sp.pi)
+    yield Let(real("end_of_way"), Select(sp.Lt(_NEAREST, whole), _NEAREST + Select(ONWARD, -2, 2) * AHEAD, whole))
+    yield Let(flag("way_ends"), sp.And(_is_at(_LOOKING), sp.Not(is_part), sp.Ge(_PLACE, real("end_of_way"))))
 
 
 def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterator[Let | Call]:
@@ -189,13 +196,13 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(is_point(_WIDTH))))
     # a simple root leaves no residual on its branch; the other side of a step counts only where its roots join
     is_simple = sp.And(sp.Le(LEAST_NOW, _NEAR), sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
-    yield Let(flag("is_known"), sp.Or(*[sp.Le(sp.Abs(BEST_NOW - known), _SAME) for known in _SETTLED]))
+    yield Let(flag("is_known"), sp.Or(*[sp.Le(sp.Abs(SETTLED - known), _SAME) for known in _SETTLED]))
     narrow = is_narrow(_WIDTH)
     is_new = sp.Or(sp.And(narrow, is_simple), sp.And(sp.Not(narrow), sp.Not(flag("is_known"))))
     yield Let(flag("is_near"), sp.And(flag("is_settled"), is_new))
     if steps.joints_at is None:
         return
-    given = {TRIED: START + direction * BEST_NOW, SIDE: SIDE}
+    given = {TRIED: START + direction * SETTLED, SIDE: SIDE}
     given = {s: v for s, v in given.items() if s in steps.joints_at.inputs}
     yield _call(steps.joints_at, arguments, given, flag("is_near"))
 
@@ -205,7 +212,7 @@ def _met(
 ) -> Iterator[Let | Call]:
     """A step on the closure; where it is met, whether the joints fit, and are the nearest."""
     here: dict[sp.Symbol, sp.Expr] = {j: j for j in joints}
-    yield _call(steps.step, arguments, here, _is_at(_MEETING))
+    yield _call(steps.step, arguments, {**here, IS_NEWTON: IS_NEWTON}, _is_at(_MEETING))
     is_last = sp.Or(sp.Gt(2 * ERROR, _BEFORE), sp.Le(_LEFT, 0))
     ends = sp.Or(sp.Le(ERROR, BOUNDARY / 100), sp.And(sp.Le(ERROR, CONVERGED), is_last), sp.Le(_LEFT, 0))
     yield Let(flag("steps_end"), sp.And(_is_at(_MEETING), ends))
@@ -254,11 +261,8 @@ def _ends() -> Iterator[Let]:
     yield Let(count("next_stage"), stage)
     turns_back = sp.And(flag("way_ends"), sp.Not(ONWARD), sp.Gt(DIRECTION, 0))
     yield Let(flag("turns_back"), turns_back)
-    # steps may lead to a root that is far away: there may be others before it
-    is_reached = sp.Le(real("nearest_now"), _PLACE + _WIDTH + 2 * AHEAD)
-    is_found = sp.And(ONWARD, is_reached, sp.Eq(count("next_stage"), _LOOKING))
     is_done = sp.And(flag("way_ends"), sp.Not(flag("turns_back")))
-    yield Let(flag("is_over"), sp.Or(is_done, is_found, sp.Le(_PASSES_LEFT, 0)))
+    yield Let(flag("is_over"), sp.Or(is_done, sp.Le(_PASSES_LEFT, 0)))
 
 
 def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Symbol, sp.Expr]:
@@ -270,7 +274,8 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
     place = Select(flag("part_is_done"), _PLACE + _WIDTH, Select(steps, _PLACE + SAFE, _PLACE))
     begins = sp.Or(flag("begins"), flag("is_shortest"))
     first, onward = trials_begun(real("place_of_start")), trials_go_on(_is_at(_SHORTENING))
-    step = Select(sp.Gt(ERROR, STALLED * _BEFORE), sp.Integer(cost_of_a_stall), _ONE)
+    stalls = sp.Gt(ERROR, STALLED * _BEFORE)
+    step = Select(stalls, sp.Integer(cost_of_a_stall), _ONE)
     is_new = sp.Or(flag("is_near"), flag("mirrors"))
     found: dict[sp.Symbol, sp.Expr] = {
         _STAGE: count("next_stage"),
@@ -283,12 +288,13 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
         _ASIDE: real("aside_now"),
         _BEFORE: Select(is_new, _FAR, ERROR),
         _LEFT: Select(is_new, sp.Integer(PASSES), _LEFT - step),
+        IS_NEWTON: sp.And(*map(sp.Not, (flag("is_near"), flag("mirrors"), IS_NEWTON)), stalls),
         _MIRRORED: sp.And(sp.Not(flag("is_near")), sp.Or(flag("mirrors"), _MIRRORED)),
         _NEAREST: real("nearest_now"),
         _PASSES_LEFT: _PASSES_LEFT - 1,
     }
     found |= {n: Select(begins, first[n], value) for n, value in onward.items()}
-    for known, before in zip(_SETTLED, (BEST_NOW, *_SETTLED), strict=False):
+    for known, before in zip(_SETTLED, (SETTLED, *_SETTLED), strict=False):
         found[known] = Select(flag("is_first"), _FAR, Select(flag("is_near"), before, known))
     for j in joints:
         mirrored = 2 * _begun(j) - j

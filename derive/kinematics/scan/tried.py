@@ -23,6 +23,8 @@ AT, TRIALS, BEST = real("at"), count("trials"), real("best")
 """How far ahead of the start of the search the next trial is; the number of trials; the best place so far."""
 BEST_NOW, LEAST_NOW = real("best_now"), real("least_now")
 REMAINDER, RATE, ROOM, GROWTH = map(real, ("remainder", "rate", "room_of_trial", "growth"))
+SETTLED = real("settled")
+"""Where Newton's method ends."""
 WAY_NOW, NEWTON_NEXT, BEND_NOW, SHORTEST_NEXT = map(real, ("way_now", "newton_place", "bend_now", "shortening_place"))
 _LEAST, _WAY = real("least"), real("way")
 _LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
@@ -79,6 +81,7 @@ def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr) -> Iterator[L
     newton = direction * REMAINDER / Select(is_steep, RATE, _MOST)
     yield Let(WAY_NOW, Select(flag("is_less"), newton, _WAY / 4))
     yield Let(NEWTON_NEXT, inside(BEST_NOW - WAY_NOW, ends))
+    yield Let(SETTLED, Select(sp.And(flag("is_less"), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL)), NEWTON_NEXT, BEST_NOW))
 
 
 def newton_is_done(is_point: sp.Basic) -> sp.Basic:

@@ -10,7 +10,7 @@ much they are rounded: a wave beyond the degree is rounding.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -39,6 +39,8 @@ _BEYOND = 2
 """The number of waves beyond the degree."""
 _MORE, _ROUNDING = 1000, sp.Float("1e-14")
 """The rounding of a value is at most so many times that of a wave beyond the degree, and that share of all waves."""
+_OF_TERMS, _LEAST = sp.Float("1e-16"), sp.Float("1e-12")
+"""The rounding of a value is this share of its terms, added over all values; products below this are rounding."""
 _ANGLES, _MOST_POWERS, _HIGHEST, _NOTHING = 96, 4, 16, 1e-10
 
 
@@ -61,26 +63,26 @@ def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[
 @stage("the wave of a root search")
 def wave_program(both: Scanned) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
-    before, sampled, value, degree = _product(both) if both.eliminated is None else _determinant(both.eliminated)
-    most = degree + _BEYOND
+    wave = _product(both) if both.eliminated is None else _determinant(both.eliminated)
+    degree, most = wave.degree, wave.degree + _BEYOND
     points = 2 * most + 1
-    number, names = count("sample"), names_of(most)
+    number, names, size = count("sample"), names_of(most), real("size_of_terms")
     lets, c, s = turned(most, TRIED)
     share = sp.Float(2.0 / points)
     parts = [real("level") * c[0], *(real("taken") * f for f in (*c[1:], *s[1:]))]
     step: list[Let | Solve] = [
         Let(TRIED, BEGIN + ToReal(number) * sp.Float(2.0 * np.pi / points)),
-        *sampled,
+        *wave.sampled,
         *lets,
-        Let(real("taken"), share * value),
+        Let(real("taken"), share * wave.value),
         Let(real("level"), real("taken") / 2),
     ]
     is_last = sp.Ge(number, points)
     loop = Iterate(
-        state=(number, *names),
-        start=(sp.Integer(0),) * (1 + len(names)),
+        state=(number, size, *names),
+        start=(sp.Integer(0),) * (2 + len(names)),
         step=tuple(step),
-        following=(number + 1, *(n + p for n, p in zip(names, parts, strict=True))),
+        following=(number + 1, size + wave.size, *(n + p for n, p in zip(names, parts, strict=True))),
         done=sp.Or(sp.Not(LOOKED_FOR), is_last) if both.closed is not None else is_last,
         limit=points + 1,
         otherwise=None,
@@ -90,23 +92,39 @@ def wave_program(both: Scanned) -> tuple[Program, int]:
     beyond = [n for n in names if n not in own]
     fifth = Let(FIFTH, sp.Add(*[_fifth(k, degree) * sp.Abs(n) for k, n in enumerate(own) if k]))
     outputs = [Output(n.name, n) for n in (*own, NOISE, FIFTH)]
-    program = normalise("compute_wave", (*before, loop, *_noise(own, beyond), fifth), outputs)
+    program = normalise("compute_wave", (*wave.before, loop, *_noise(own, beyond, size), fifth), outputs)
     return replace(
         program, summary="The product of the residuals of all branches as a sum of waves, and its rounding"
     ), degree
 
 
 _WHAT = ("the residuals of all branches, multiplied", "the determinant that vanishes where the arm closes")
-_Sampled = tuple[tuple[Statement, ...], Sequence[Let | Solve], sp.Expr, int]
-"""Statements that are run once; those that compute the wave at an angle; its value, and its degree."""
+
+
+@dataclass(frozen=True)
+class _Sampled:
+    """What the wave is made of."""
+
+    before: tuple[Statement, ...]
+    """Statements that are run once."""
+    sampled: tuple[Let | Solve, ...]
+    """Those that compute the wave at an angle."""
+    value: sp.Expr
+    size: sp.Expr
+    """The size of what it is the difference of."""
+    degree: int
 
 
 def _product(both: Scanned) -> _Sampled:
     """The residuals of all branches, multiplied."""
     samples, trial = _around(both), trial_of_all_signs(both)
     found = product_of(trial.statements, trial.value, samples)
-    value, degree = _cleared(found, samples)
-    return (), found.statements, value, degree
+    factor, degree = _cleared(found, samples)
+    cleared = real("cleared_by")
+    bound = {let.name: let.value for let in found.statements}
+    terms = sp.Add.make_args(bound.get(found.value, found.value))
+    size = sp.Abs(cleared) * (_LEAST + sp.Add(*map(sp.Abs, terms)))
+    return _Sampled((), (*found.statements, Let(cleared, factor)), cleared * found.value, size, degree)
 
 
 def _determinant(equations: Equations) -> _Sampled:
@@ -114,7 +132,7 @@ def _determinant(equations: Equations) -> _Sampled:
     joint = equations.elimination.searched.symbol
     statements, value = determinant_of(equations)
     own = Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED))
-    return (call_of(equations),), (*own, *statements), value, equations.elimination.degree
+    return _Sampled((call_of(equations),), (*own, *statements), value, sp.Integer(0), equations.elimination.degree)
 
 
 def _around(both: Scanned) -> dict[str, Array]:
@@ -128,10 +146,12 @@ def _fifth(place: int, degree: int) -> sp.Expr:
     return sp.Float((place if place <= degree else place - degree) ** 5 / 120)
 
 
-def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Let]:
-    """The bound of the rounding of the wave."""
+def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol], size: sp.Symbol) -> Iterator[Let]:
+    """The bound of the rounding of the wave. size: that of what it is the difference of, which may be as good as equal
+    everywhere.
+    """
     largest: sp.Expr = real("rounding_0")
-    yield Let(largest, _ROUNDING * sp.Add(*map(sp.Abs, own)))
+    yield Let(largest, _ROUNDING * sp.Add(*map(sp.Abs, own)) + _OF_TERMS * size)
     for k, n in enumerate(beyond, 1):
         yield Let(real(f"rounding_{k}"), larger(_MORE * sp.Abs(n), largest))
         largest = real(f"rounding_{k}")
@@ -139,7 +159,7 @@ def _noise(own: Sequence[sp.Symbol], beyond: Sequence[sp.Symbol]) -> Iterator[Le
 
 
 def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
-    """The product times the powers of its divisors that make its degree lowest, and this degree."""
+    """The powers of its divisors that make the degree of the product lowest, multiplied, and this degree."""
     known = dict(samples)
     for let in found.statements:
         known[let.name.name] = np.asarray(evaluate(let.value, known))
@@ -154,7 +174,7 @@ def _cleared(found: Product, samples: dict[str, Array]) -> tuple[sp.Expr, int]:
     if best is None:
         raise Unsolved("the residual is no wave of a low degree")
     factors = [d**p for d, p in zip(found.divisors, best[2], strict=True)]
-    return sp.Mul(found.value, *factors), best[0]
+    return sp.Mul(*factors), best[0]
 
 
 def _degree(values: Array) -> int:

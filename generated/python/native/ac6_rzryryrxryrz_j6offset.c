@@ -142,6 +142,7 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   const bool looked_for = given[12] != 0.0;
   /* the residuals of all branches, multiplied, at equal distances around the circle */
   int sample = 0;
+  double size_of_terms = 0.0;
   double wave_cos_0 = 0.0;
   double wave_cos_1 = 0.0;
   double wave_cos_2 = 0.0;
@@ -163,265 +164,270 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   double wave_sin_8 = 0.0;
   double wave_sin_9 = 0.0;
   double wave_sin_10 = 0.0;
-  double tried, cos_q6_tried, sin_q6_tried, wrist_x_tried, wrist_y_tried, factor_8_part, wrist_z_tried,
-      wrist_z_from_q1_tried, factor_9_root_1_part, factor_13_root_1_part, factor_11_root_1_part,
-      factor_14_root_1_part, wrist_x_from_q1_root_1_part, product_in_factor_17_part, factor_17_part,
-      factor_18_part, length_q2_part, factor_18_root_1_part, product_in_factor_105_part, factor_105_part,
-      factor_106_part, factor_27_part, factor_29_part, factor_34_part, factor_27_part_minus_factor_29_part,
-      factor_34_root_1_part, factor_123_root_1_part, factor_124_root_1_part, r12_from_q1_root_1_part,
-      sum_q3_part, one_by_sum_q3_part, factor_31_part, factor_42_part, factor_44_part, factor_31_root_1_part,
-      factor_42_root_1_part, factor_44_root_1_part, factor_37_part, factor_46_root_3_part,
-      factor_47_root_3_part, factor_61_part, factor_50_part, factor_52_part, factor_64_part,
-      arm_across_q2_part, factor_69_part, factor_61_root_1_part, factor_50_root_1_part,
-      factor_52_root_1_part, factor_64_root_1_part, arm_across_q2_root_1_part, factor_69_root_1_part,
-      one_by_factor_106_part, factor_109_root_1_part, factor_48_root_3_part, factor_49_root_3_part,
-      factor_54_root_3_part, factor_57_root_3_part, arm_along_q2_root_3_part, factor_71_root_3_part,
-      factor_71_root_1_root_3_part, product_in_factor_108_root_3_part, factor_108_root_3_part,
-      product_in_factor_109_root_3_part, factor_109_root_3_part, factor_109_root_1_root_3_part,
-      factor_156_root_1_root_3_part, factor_73_part, factor_74_part, factor_74_root_1_part,
-      factor_116_root_1_part, factor_76_root_3_part, factor_116_root_3_part, factor_116_root_1_root_3_part,
-      factor_166_root_1_root_3_part, cos_q23_root_1_root_3_part, product_in_factor_187_root_3_part,
-      factor_187_root_3_part, factor_107_part, factor_109_part, product_in_factor_131_root_3_part,
-      factor_131_root_3_part, factor_132_root_3_part, factor_115_part, factor_116_part,
-      product_in_factor_137_root_3_part, factor_137_root_3_part, factor_142_root_3_part, sin_q23_root_3_part,
-      factor_190_root_3_part, r12_from_q123_root_3_part, factor_198_root_3_part, factor_120_root_1_part,
-      factor_121_root_1_part, r11_from_q1_root_1_part, product_in_factor_175_root_3_part,
-      factor_175_root_3_part, factor_178_root_3_part, r11_from_q123_root_3_part, factor_202_root_3_part,
-      r12_from_q123_before_q6_root_3_part, factor_153_root_3_part, factor_156_root_3_part,
-      factor_165_root_3_part, factor_166_root_3_part, cos_q23_root_3_part, factor_188_root_1_root_3_part,
-      factor_132_root_1_root_3_part, factor_142_root_1_root_3_part, sin_q23_root_1_root_3_part,
-      factor_190_root_1_root_3_part, r12_from_q123_root_1_root_3_part, factor_198_root_1_root_3_part,
-      factor_176_root_1_root_3_part, factor_178_root_1_root_3_part, r11_from_q123_root_1_root_3_part,
-      factor_202_root_1_root_3_part, r12_from_q123_before_q6_root_1_root_3_part, factor_301_part,
-      factor_302_part, factor_302_root_1_part, factor_305_root_1_part, factor_150_part,
-      product_in_factor_151_part, factor_151_part, product_in_factor_154_part, product_in_factor_154_part_2,
-      factor_154_part, factor_156_part, factor_160_part, product_in_factor_161_part, factor_161_part,
-      product_in_factor_163_part, factor_163_part, factor_166_part, cos_q23_part, factor_188_root_1_part,
-      product_in_factor_127_root_1_part, factor_127_root_1_part, factor_130_root_1_part,
-      factor_132_root_1_part, product_in_factor_138_root_1_part, factor_138_root_1_part,
-      factor_141_root_1_part, factor_142_root_1_part, sin_q23_root_1_part, factor_190_root_1_part,
-      r12_from_q123_root_1_part, factor_198_root_1_part, factor_176_root_1_part, factor_178_root_1_part,
-      r11_from_q123_root_1_part, factor_202_root_1_part, r12_from_q123_before_q6_root_1_part,
-      factor_151_root_1_part, factor_155_root_1_part, factor_156_root_1_part, factor_161_root_1_part,
-      factor_164_root_1_part, factor_166_root_1_part, cos_q23_root_1_part, factor_186_part, factor_126_part,
-      factor_127_part, factor_129_part, factor_132_part, factor_136_part, factor_138_part, factor_140_part,
-      factor_142_part, sin_q23_part, factor_190_part, r12_from_q123_part, factor_198_part, factor_174_part,
-      factor_178_part, r11_from_q123_part, factor_202_part, r12_from_q123_before_q6_part,
-      factor_308_root_1_part, product_310_root_1_part, factor_312_part, factor_313_part, factor_304_part,
-      factor_305_part, factor_307_part, factor_308_part, product_310_part, factor_314_part, product_315_part,
-      taken, level, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, cos_5, sin_5, cos_6, sin_6, cos_7, sin_7,
-      cos_8, sin_8, cos_9, sin_9, cos_10, sin_10;
+  double tried, cos_q6_tried, sin_q6_tried, wrist_x_tried, wrist_y_tried, wrist_z_tried,
+      wrist_z_from_q1_tried, factor_8_part, factor_8_part_or_1, factor_10_root_1_part, factor_14_root_1_part,
+      factor_12_root_1_part, factor_15_root_1_part, wrist_x_from_q1_root_1_part, product_in_factor_18_part,
+      factor_18_part, factor_19_part, factor_27_part, factor_28_part, factor_30_part, factor_19_root_1_part,
+      product_in_factor_35_part, factor_35_part, factor_36_part, factor_28_part_minus_factor_30_part,
+      factor_36_root_1_part, factor_127_root_1_part, factor_128_root_1_part, r12_from_q1_root_1_part,
+      sum_q3_part, sum_q3_part_or_1, one_by_sum_q3_part, factor_33_part, factor_44_part, factor_47_part,
+      factor_33_root_1_part, factor_44_root_1_part, factor_47_root_1_part, factor_39_part,
+      factor_49_root_3_part, factor_50_root_3_part, factor_64_part, factor_53_part, factor_55_part,
+      factor_67_part, arm_across_q2_part, factor_72_part, factor_64_root_1_part, factor_53_root_1_part,
+      factor_55_root_1_part, factor_67_root_1_part, arm_across_q2_root_1_part, factor_72_root_1_part,
+      factor_109_part, factor_109_part_or_1, one_by_factor_109_part_or_1, factor_113_root_1_part,
+      factor_51_root_3_part, factor_52_root_3_part, factor_57_root_3_part, factor_60_root_3_part,
+      arm_along_q2_root_3_part, factor_74_root_3_part, factor_74_root_1_root_3_part,
+      product_in_factor_112_root_3_part, factor_112_root_3_part, product_in_factor_113_root_3_part,
+      factor_113_root_3_part, factor_113_root_1_root_3_part, factor_160_root_1_root_3_part, factor_76_part,
+      factor_77_part, factor_77_root_1_part, factor_120_root_1_part, factor_79_root_3_part,
+      factor_120_root_3_part, factor_120_root_1_root_3_part, factor_170_root_1_root_3_part,
+      cos_q23_root_1_root_3_part, product_in_factor_191_root_3_part, factor_191_root_3_part, factor_111_part,
+      factor_113_part, product_in_factor_135_root_3_part, factor_135_root_3_part, factor_136_root_3_part,
+      factor_119_part, factor_120_part, product_in_factor_141_root_3_part, factor_141_root_3_part,
+      factor_146_root_3_part, sin_q23_root_3_part, factor_194_root_3_part, r12_from_q123_root_3_part,
+      factor_202_root_3_part, factor_124_root_1_part, factor_125_root_1_part, r11_from_q1_root_1_part,
+      product_in_factor_179_root_3_part, factor_179_root_3_part, factor_182_root_3_part,
+      r11_from_q123_root_3_part, factor_206_root_3_part, r12_from_q123_before_q6_root_3_part,
+      factor_157_root_3_part, factor_160_root_3_part, factor_169_root_3_part, factor_170_root_3_part,
+      cos_q23_root_3_part, factor_192_root_1_root_3_part, factor_136_root_1_root_3_part,
+      factor_146_root_1_root_3_part, sin_q23_root_1_root_3_part, factor_194_root_1_root_3_part,
+      r12_from_q123_root_1_root_3_part, factor_202_root_1_root_3_part, factor_180_root_1_root_3_part,
+      factor_182_root_1_root_3_part, r11_from_q123_root_1_root_3_part, factor_206_root_1_root_3_part,
+      r12_from_q123_before_q6_root_1_root_3_part, factor_214_part, factor_215_part, factor_215_root_1_part,
+      factor_218_root_1_part, factor_154_part, product_in_factor_155_part, factor_155_part,
+      product_in_factor_158_part, product_in_factor_158_part_2, factor_158_part, factor_160_part,
+      factor_164_part, product_in_factor_165_part, factor_165_part, product_in_factor_167_part,
+      factor_167_part, factor_170_part, cos_q23_part, factor_192_root_1_part,
+      product_in_factor_131_root_1_part, factor_131_root_1_part, factor_134_root_1_part,
+      factor_136_root_1_part, product_in_factor_142_root_1_part, factor_142_root_1_part,
+      factor_145_root_1_part, factor_146_root_1_part, sin_q23_root_1_part, factor_194_root_1_part,
+      r12_from_q123_root_1_part, factor_202_root_1_part, factor_180_root_1_part, factor_182_root_1_part,
+      r11_from_q123_root_1_part, factor_206_root_1_part, r12_from_q123_before_q6_root_1_part,
+      factor_155_root_1_part, factor_159_root_1_part, factor_160_root_1_part, factor_165_root_1_part,
+      factor_168_root_1_part, factor_170_root_1_part, cos_q23_root_1_part, factor_190_part, factor_130_part,
+      factor_131_part, factor_133_part, factor_136_part, factor_140_part, factor_142_part, factor_144_part,
+      factor_146_part, sin_q23_part, factor_194_part, r12_from_q123_part, factor_202_part, factor_178_part,
+      factor_182_part, r11_from_q123_part, factor_206_part, r12_from_q123_before_q6_part,
+      factor_221_root_1_part, product_223_root_1_part, factor_225_part, factor_226_part, factor_217_part,
+      factor_218_part, factor_220_part, factor_221_part, product_223_part, factor_227_part, cleared_by,
+      product_228_part, taken, level, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, cos_5, sin_5, cos_6, sin_6,
+      cos_7, sin_7, cos_8, sin_8, cos_9, sin_9, cos_10, sin_10;
   for (int pass = 0; pass < 22; pass += 1) {
     tried = 0.1 + 0.299199300341885*sample;
     cos_q6_tried = cos(tried);
     sin_q6_tried = sin(tried);
     wrist_x_tried = goal_x + (goal_r12*sin_q6_tried - goal_r11*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r13;
     wrist_y_tried = goal_y + (goal_r22*sin_q6_tried - goal_r21*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r23;
-    factor_8_part = -wrist_x_tried*wrist_x_tried - wrist_y_tried*wrist_y_tried;
     wrist_z_tried = goal_z + (goal_r32*sin_q6_tried - goal_r31*cos_q6_tried)*k->j6_offset_x - k->d6*goal_r33;
     wrist_z_from_q1_tried = wrist_z_tried - k->d1;
-    factor_9_root_1_part = -wrist_x_tried/factor_8_part;
-    factor_13_root_1_part = factor_9_root_1_part*wrist_x_tried;
-    factor_11_root_1_part = -wrist_y_tried/factor_8_part;
-    factor_14_root_1_part = factor_11_root_1_part*wrist_y_tried;
-    wrist_x_from_q1_root_1_part = factor_13_root_1_part + factor_14_root_1_part;
-    product_in_factor_17_part = factor_8_part*wrist_x_from_q1_root_1_part;
-    factor_17_part = -product_in_factor_17_part*wrist_x_from_q1_root_1_part;
-    factor_18_part = k->a1_squared + factor_17_part;
-    length_q2_part = factor_18_part + wrist_z_from_q1_tried*wrist_z_from_q1_tried;
-    factor_18_root_1_part = -k->twice_a1*wrist_x_from_q1_root_1_part;
-    product_in_factor_105_part = factor_18_root_1_part*factor_8_part;
-    factor_105_part = factor_18_root_1_part*product_in_factor_105_part;
-    factor_106_part = factor_105_part + length_q2_part*length_q2_part;
-    factor_27_part = k->a2_plus_length_25_squared - length_q2_part;
-    factor_29_part = length_q2_part - k->a2_minus_length_25_squared;
-    factor_34_part = factor_105_part + factor_27_part*factor_29_part;
-    factor_27_part_minus_factor_29_part = factor_27_part - factor_29_part;
-    factor_34_root_1_part = factor_18_root_1_part*factor_27_part_minus_factor_29_part;
-    factor_123_root_1_part = factor_9_root_1_part*goal_r12;
-    factor_124_root_1_part = factor_11_root_1_part*goal_r22;
-    r12_from_q1_root_1_part = factor_123_root_1_part + factor_124_root_1_part;
-    sum_q3_part = factor_27_part + factor_29_part;
-    one_by_sum_q3_part = 1.0/sum_q3_part;
-    factor_31_part = -factor_27_part_minus_factor_29_part*one_by_sum_q3_part;
-    factor_42_part = k->a3*factor_31_part;
-    factor_44_part = factor_42_part*k->one_by_length_25;
-    factor_31_root_1_part = 2.0*factor_18_root_1_part*one_by_sum_q3_part;
-    factor_42_root_1_part = k->a3*factor_31_root_1_part;
-    factor_44_root_1_part = factor_42_root_1_part*k->one_by_length_25;
-    factor_37_part = 2.0*one_by_sum_q3_part;
-    factor_46_root_3_part = k->d4*factor_37_part;
-    factor_47_root_3_part = factor_46_root_3_part*k->one_by_length_25;
-    factor_61_part = k->a3*factor_44_part;
-    factor_50_part = -k->d4*factor_31_part;
-    factor_52_part = factor_50_part*k->one_by_length_25;
-    factor_64_part = -k->d4*factor_52_part;
-    arm_across_q2_part = k->a2 + factor_61_part + factor_64_part;
-    factor_69_part = arm_across_q2_part*wrist_z_from_q1_tried;
-    factor_61_root_1_part = k->a3*factor_44_root_1_part;
-    factor_50_root_1_part = -k->d4*factor_31_root_1_part;
-    factor_52_root_1_part = factor_50_root_1_part*k->one_by_length_25;
-    factor_64_root_1_part = -k->d4*factor_52_root_1_part;
-    arm_across_q2_root_1_part = factor_61_root_1_part + factor_64_root_1_part;
-    factor_69_root_1_part = arm_across_q2_root_1_part*wrist_z_from_q1_tried;
-    one_by_factor_106_part = 1.0/factor_106_part;
-    factor_109_root_1_part = (factor_69_root_1_part*length_q2_part - factor_18_root_1_part*factor_69_part)
-        *one_by_factor_106_part;
-    factor_48_root_3_part = k->a3*factor_37_part;
-    factor_49_root_3_part = factor_48_root_3_part*k->one_by_length_25;
-    factor_54_root_3_part = k->a3*factor_49_root_3_part;
-    factor_57_root_3_part = k->d4*factor_47_root_3_part;
-    arm_along_q2_root_3_part = factor_54_root_3_part + factor_57_root_3_part;
-    factor_71_root_3_part = -k->a1*arm_along_q2_root_3_part;
-    factor_71_root_1_root_3_part = arm_along_q2_root_3_part*wrist_x_from_q1_root_1_part;
-    product_in_factor_108_root_3_part = one_by_factor_106_part*product_in_factor_105_part;
-    factor_108_root_3_part = factor_71_root_1_root_3_part*product_in_factor_108_root_3_part;
-    product_in_factor_109_root_3_part = length_q2_part*one_by_factor_106_part;
-    factor_109_root_3_part = factor_108_root_3_part + factor_71_root_3_part*product_in_factor_109_root_3_part;
-    factor_109_root_1_root_3_part = (factor_71_root_1_root_3_part*length_q2_part
-        - factor_18_root_1_part*factor_71_root_3_part)*one_by_factor_106_part;
-    factor_156_root_1_root_3_part = factor_109_root_1_part*factor_47_root_3_part
-        + factor_109_root_1_root_3_part*factor_44_part + factor_109_root_3_part*factor_44_root_1_part;
-    factor_73_part = -arm_across_q2_root_1_part*product_in_factor_17_part;
-    factor_74_part = factor_73_part - k->a1*arm_across_q2_part;
-    factor_74_root_1_part = arm_across_q2_part*wrist_x_from_q1_root_1_part - k->a1*arm_across_q2_root_1_part;
-    factor_116_root_1_part = (factor_74_root_1_part*length_q2_part - factor_18_root_1_part*factor_74_part)
-        *one_by_factor_106_part;
-    factor_76_root_3_part = -arm_along_q2_root_3_part*wrist_z_from_q1_tried;
-    factor_116_root_3_part = factor_76_root_3_part*product_in_factor_109_root_3_part;
-    factor_116_root_1_root_3_part = -factor_18_root_1_part*factor_76_root_3_part*one_by_factor_106_part;
-    factor_166_root_1_root_3_part = -factor_116_root_1_part*factor_49_root_3_part
-        - factor_116_root_1_root_3_part*factor_52_part - factor_116_root_3_part*factor_52_root_1_part;
-    cos_q23_root_1_root_3_part = factor_156_root_1_root_3_part + factor_166_root_1_root_3_part;
-    product_in_factor_187_root_3_part = factor_8_part*r12_from_q1_root_1_part;
-    factor_187_root_3_part = -product_in_factor_187_root_3_part*cos_q23_root_1_root_3_part;
-    factor_107_part = factor_69_root_1_part*product_in_factor_108_root_3_part;
-    factor_109_part = factor_107_part + factor_69_part*product_in_factor_109_root_3_part;
-    product_in_factor_131_root_3_part = factor_52_root_1_part*factor_8_part;
-    factor_131_root_3_part = -factor_109_root_1_root_3_part*product_in_factor_131_root_3_part;
-    factor_132_root_3_part = factor_131_root_3_part + factor_109_part*factor_49_root_3_part
-        + factor_109_root_3_part*factor_52_part;
-    factor_115_part = factor_74_root_1_part*product_in_factor_108_root_3_part;
-    factor_116_part = factor_115_part + factor_74_part*product_in_factor_109_root_3_part;
-    product_in_factor_137_root_3_part = factor_44_root_1_part*factor_8_part;
-    factor_137_root_3_part = -factor_116_root_1_root_3_part*product_in_factor_137_root_3_part;
-    factor_142_root_3_part = factor_137_root_3_part + factor_116_part*factor_47_root_3_part
-        + factor_116_root_3_part*factor_44_part;
-    sin_q23_root_3_part = factor_132_root_3_part + factor_142_root_3_part;
-    factor_190_root_3_part = -goal_r32*sin_q23_root_3_part;
-    r12_from_q123_root_3_part = factor_187_root_3_part + factor_190_root_3_part;
-    factor_198_root_3_part = r12_from_q123_root_3_part*cos_q6_tried;
-    factor_120_root_1_part = factor_9_root_1_part*goal_r11;
-    factor_121_root_1_part = factor_11_root_1_part*goal_r21;
-    r11_from_q1_root_1_part = factor_120_root_1_part + factor_121_root_1_part;
-    product_in_factor_175_root_3_part = factor_8_part*r11_from_q1_root_1_part;
-    factor_175_root_3_part = -product_in_factor_175_root_3_part*cos_q23_root_1_root_3_part;
-    factor_178_root_3_part = -goal_r31*sin_q23_root_3_part;
-    r11_from_q123_root_3_part = factor_175_root_3_part + factor_178_root_3_part;
-    factor_202_root_3_part = r11_from_q123_root_3_part*sin_q6_tried;
-    r12_from_q123_before_q6_root_3_part = factor_198_root_3_part + factor_202_root_3_part;
-    factor_153_root_3_part = -factor_109_root_1_root_3_part*product_in_factor_137_root_3_part;
-    factor_156_root_3_part = factor_153_root_3_part + factor_109_part*factor_47_root_3_part
-        + factor_109_root_3_part*factor_44_part;
-    factor_165_root_3_part = factor_116_root_1_root_3_part*product_in_factor_131_root_3_part;
-    factor_166_root_3_part = factor_165_root_3_part - factor_116_part*factor_49_root_3_part
-        - factor_116_root_3_part*factor_52_part;
-    cos_q23_root_3_part = factor_156_root_3_part + factor_166_root_3_part;
-    factor_188_root_1_root_3_part = r12_from_q1_root_1_part*cos_q23_root_3_part;
-    factor_132_root_1_root_3_part = factor_109_root_1_part*factor_49_root_3_part
-        + factor_109_root_1_root_3_part*factor_52_part + factor_109_root_3_part*factor_52_root_1_part;
-    factor_142_root_1_root_3_part = factor_116_root_1_part*factor_47_root_3_part
-        + factor_116_root_1_root_3_part*factor_44_part + factor_116_root_3_part*factor_44_root_1_part;
-    sin_q23_root_1_root_3_part = factor_132_root_1_root_3_part + factor_142_root_1_root_3_part;
-    factor_190_root_1_root_3_part = -goal_r32*sin_q23_root_1_root_3_part;
-    r12_from_q123_root_1_root_3_part = factor_188_root_1_root_3_part + factor_190_root_1_root_3_part;
-    factor_198_root_1_root_3_part = r12_from_q123_root_1_root_3_part*cos_q6_tried;
-    factor_176_root_1_root_3_part = r11_from_q1_root_1_part*cos_q23_root_3_part;
-    factor_178_root_1_root_3_part = -goal_r31*sin_q23_root_1_root_3_part;
-    r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part;
-    factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part*sin_q6_tried;
-    r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part
-        + factor_202_root_1_root_3_part;
-    factor_301_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
+    factor_8_part = -wrist_x_tried*wrist_x_tried - wrist_y_tried*wrist_y_tried;
+    factor_8_part_or_1 = fabs(factor_8_part) > 0.0 ? factor_8_part : 1.0;
+    factor_10_root_1_part = -wrist_x_tried/factor_8_part_or_1;
+    factor_14_root_1_part = factor_10_root_1_part*wrist_x_tried;
+    factor_12_root_1_part = -wrist_y_tried/factor_8_part_or_1;
+    factor_15_root_1_part = factor_12_root_1_part*wrist_y_tried;
+    wrist_x_from_q1_root_1_part = factor_14_root_1_part + factor_15_root_1_part;
+    product_in_factor_18_part = factor_8_part*wrist_x_from_q1_root_1_part;
+    factor_18_part = -product_in_factor_18_part*wrist_x_from_q1_root_1_part;
+    factor_19_part = k->a1_squared + factor_18_part;
+    factor_27_part = -factor_19_part - wrist_z_from_q1_tried*wrist_z_from_q1_tried;
+    factor_28_part = k->a2_plus_length_26_squared + factor_27_part;
+    factor_30_part = -k->a2_minus_length_26_squared - factor_27_part;
+    factor_19_root_1_part = -k->twice_a1*wrist_x_from_q1_root_1_part;
+    product_in_factor_35_part = factor_19_root_1_part*factor_8_part;
+    factor_35_part = factor_19_root_1_part*product_in_factor_35_part;
+    factor_36_part = factor_35_part + factor_28_part*factor_30_part;
+    factor_28_part_minus_factor_30_part = factor_28_part - factor_30_part;
+    factor_36_root_1_part = factor_19_root_1_part*factor_28_part_minus_factor_30_part;
+    factor_127_root_1_part = factor_10_root_1_part*goal_r12;
+    factor_128_root_1_part = factor_12_root_1_part*goal_r22;
+    r12_from_q1_root_1_part = factor_127_root_1_part + factor_128_root_1_part;
+    sum_q3_part = factor_28_part + factor_30_part;
+    sum_q3_part_or_1 = fabs(sum_q3_part) > 0.0 ? sum_q3_part : 1.0;
+    one_by_sum_q3_part = 1.0/sum_q3_part_or_1;
+    factor_33_part = -factor_28_part_minus_factor_30_part*one_by_sum_q3_part;
+    factor_44_part = k->a3*factor_33_part;
+    factor_47_part = factor_44_part*k->one_by_length_26_or_1;
+    factor_33_root_1_part = 2.0*factor_19_root_1_part*one_by_sum_q3_part;
+    factor_44_root_1_part = k->a3*factor_33_root_1_part;
+    factor_47_root_1_part = factor_44_root_1_part*k->one_by_length_26_or_1;
+    factor_39_part = 2.0*one_by_sum_q3_part;
+    factor_49_root_3_part = k->d4*factor_39_part;
+    factor_50_root_3_part = factor_49_root_3_part*k->one_by_length_26_or_1;
+    factor_64_part = k->a3*factor_47_part;
+    factor_53_part = -k->d4*factor_33_part;
+    factor_55_part = factor_53_part*k->one_by_length_26_or_1;
+    factor_67_part = -k->d4*factor_55_part;
+    arm_across_q2_part = k->a2 + factor_64_part + factor_67_part;
+    factor_72_part = arm_across_q2_part*wrist_z_from_q1_tried;
+    factor_64_root_1_part = k->a3*factor_47_root_1_part;
+    factor_53_root_1_part = -k->d4*factor_33_root_1_part;
+    factor_55_root_1_part = factor_53_root_1_part*k->one_by_length_26_or_1;
+    factor_67_root_1_part = -k->d4*factor_55_root_1_part;
+    arm_across_q2_root_1_part = factor_64_root_1_part + factor_67_root_1_part;
+    factor_72_root_1_part = arm_across_q2_root_1_part*wrist_z_from_q1_tried;
+    factor_109_part = factor_35_part + factor_27_part*factor_27_part;
+    factor_109_part_or_1 = fabs(factor_109_part) > 0.0 ? factor_109_part : 1.0;
+    one_by_factor_109_part_or_1 = 1.0/factor_109_part_or_1;
+    factor_113_root_1_part = (-factor_19_root_1_part*factor_72_part - factor_27_part*factor_72_root_1_part)
+        *one_by_factor_109_part_or_1;
+    factor_51_root_3_part = k->a3*factor_39_part;
+    factor_52_root_3_part = factor_51_root_3_part*k->one_by_length_26_or_1;
+    factor_57_root_3_part = k->a3*factor_52_root_3_part;
+    factor_60_root_3_part = k->d4*factor_50_root_3_part;
+    arm_along_q2_root_3_part = factor_57_root_3_part + factor_60_root_3_part;
+    factor_74_root_3_part = -k->a1*arm_along_q2_root_3_part;
+    factor_74_root_1_root_3_part = arm_along_q2_root_3_part*wrist_x_from_q1_root_1_part;
+    product_in_factor_112_root_3_part = one_by_factor_109_part_or_1*product_in_factor_35_part;
+    factor_112_root_3_part = factor_74_root_1_root_3_part*product_in_factor_112_root_3_part;
+    product_in_factor_113_root_3_part = factor_27_part*one_by_factor_109_part_or_1;
+    factor_113_root_3_part = factor_112_root_3_part - factor_74_root_3_part*product_in_factor_113_root_3_part;
+    factor_113_root_1_root_3_part = (-factor_19_root_1_part*factor_74_root_3_part
+        - factor_27_part*factor_74_root_1_root_3_part)*one_by_factor_109_part_or_1;
+    factor_160_root_1_root_3_part = factor_113_root_1_part*factor_50_root_3_part
+        + factor_113_root_1_root_3_part*factor_47_part + factor_113_root_3_part*factor_47_root_1_part;
+    factor_76_part = -arm_across_q2_root_1_part*product_in_factor_18_part;
+    factor_77_part = factor_76_part - k->a1*arm_across_q2_part;
+    factor_77_root_1_part = arm_across_q2_part*wrist_x_from_q1_root_1_part - k->a1*arm_across_q2_root_1_part;
+    factor_120_root_1_part = (-factor_19_root_1_part*factor_77_part - factor_27_part*factor_77_root_1_part)
+        *one_by_factor_109_part_or_1;
+    factor_79_root_3_part = -arm_along_q2_root_3_part*wrist_z_from_q1_tried;
+    factor_120_root_3_part = -factor_79_root_3_part*product_in_factor_113_root_3_part;
+    factor_120_root_1_root_3_part = -factor_19_root_1_part*factor_79_root_3_part*one_by_factor_109_part_or_1;
+    factor_170_root_1_root_3_part = -factor_120_root_1_part*factor_52_root_3_part
+        - factor_120_root_1_root_3_part*factor_55_part - factor_120_root_3_part*factor_55_root_1_part;
+    cos_q23_root_1_root_3_part = factor_160_root_1_root_3_part + factor_170_root_1_root_3_part;
+    product_in_factor_191_root_3_part = factor_8_part*r12_from_q1_root_1_part;
+    factor_191_root_3_part = -product_in_factor_191_root_3_part*cos_q23_root_1_root_3_part;
+    factor_111_part = factor_72_root_1_part*product_in_factor_112_root_3_part;
+    factor_113_part = factor_111_part - factor_72_part*product_in_factor_113_root_3_part;
+    product_in_factor_135_root_3_part = factor_55_root_1_part*factor_8_part;
+    factor_135_root_3_part = -factor_113_root_1_root_3_part*product_in_factor_135_root_3_part;
+    factor_136_root_3_part = factor_135_root_3_part + factor_113_part*factor_52_root_3_part
+        + factor_113_root_3_part*factor_55_part;
+    factor_119_part = factor_77_root_1_part*product_in_factor_112_root_3_part;
+    factor_120_part = factor_119_part - factor_77_part*product_in_factor_113_root_3_part;
+    product_in_factor_141_root_3_part = factor_47_root_1_part*factor_8_part;
+    factor_141_root_3_part = -factor_120_root_1_root_3_part*product_in_factor_141_root_3_part;
+    factor_146_root_3_part = factor_141_root_3_part + factor_120_part*factor_50_root_3_part
+        + factor_120_root_3_part*factor_47_part;
+    sin_q23_root_3_part = factor_136_root_3_part + factor_146_root_3_part;
+    factor_194_root_3_part = -goal_r32*sin_q23_root_3_part;
+    r12_from_q123_root_3_part = factor_191_root_3_part + factor_194_root_3_part;
+    factor_202_root_3_part = r12_from_q123_root_3_part*cos_q6_tried;
+    factor_124_root_1_part = factor_10_root_1_part*goal_r11;
+    factor_125_root_1_part = factor_12_root_1_part*goal_r21;
+    r11_from_q1_root_1_part = factor_124_root_1_part + factor_125_root_1_part;
+    product_in_factor_179_root_3_part = factor_8_part*r11_from_q1_root_1_part;
+    factor_179_root_3_part = -product_in_factor_179_root_3_part*cos_q23_root_1_root_3_part;
+    factor_182_root_3_part = -goal_r31*sin_q23_root_3_part;
+    r11_from_q123_root_3_part = factor_179_root_3_part + factor_182_root_3_part;
+    factor_206_root_3_part = r11_from_q123_root_3_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_3_part = factor_202_root_3_part + factor_206_root_3_part;
+    factor_157_root_3_part = -factor_113_root_1_root_3_part*product_in_factor_141_root_3_part;
+    factor_160_root_3_part = factor_157_root_3_part + factor_113_part*factor_50_root_3_part
+        + factor_113_root_3_part*factor_47_part;
+    factor_169_root_3_part = factor_120_root_1_root_3_part*product_in_factor_135_root_3_part;
+    factor_170_root_3_part = factor_169_root_3_part - factor_120_part*factor_52_root_3_part
+        - factor_120_root_3_part*factor_55_part;
+    cos_q23_root_3_part = factor_160_root_3_part + factor_170_root_3_part;
+    factor_192_root_1_root_3_part = r12_from_q1_root_1_part*cos_q23_root_3_part;
+    factor_136_root_1_root_3_part = factor_113_root_1_part*factor_52_root_3_part
+        + factor_113_root_1_root_3_part*factor_55_part + factor_113_root_3_part*factor_55_root_1_part;
+    factor_146_root_1_root_3_part = factor_120_root_1_part*factor_50_root_3_part
+        + factor_120_root_1_root_3_part*factor_47_part + factor_120_root_3_part*factor_47_root_1_part;
+    sin_q23_root_1_root_3_part = factor_136_root_1_root_3_part + factor_146_root_1_root_3_part;
+    factor_194_root_1_root_3_part = -goal_r32*sin_q23_root_1_root_3_part;
+    r12_from_q123_root_1_root_3_part = factor_192_root_1_root_3_part + factor_194_root_1_root_3_part;
+    factor_202_root_1_root_3_part = r12_from_q123_root_1_root_3_part*cos_q6_tried;
+    factor_180_root_1_root_3_part = r11_from_q1_root_1_part*cos_q23_root_3_part;
+    factor_182_root_1_root_3_part = -goal_r31*sin_q23_root_1_root_3_part;
+    r11_from_q123_root_1_root_3_part = factor_180_root_1_root_3_part + factor_182_root_1_root_3_part;
+    factor_206_root_1_root_3_part = r11_from_q123_root_1_root_3_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_1_root_3_part = factor_202_root_1_root_3_part
+        + factor_206_root_1_root_3_part;
+    factor_214_part = -factor_8_part*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_1_root_3_part;
-    factor_302_part = factor_301_part
+    factor_215_part = factor_214_part
         + r12_from_q123_before_q6_root_3_part*r12_from_q123_before_q6_root_3_part;
-    factor_302_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
+    factor_215_root_1_part = 2.0*r12_from_q123_before_q6_root_1_root_3_part
         *r12_from_q123_before_q6_root_3_part;
-    factor_305_root_1_part = factor_302_part*factor_34_root_1_part + factor_302_root_1_part*factor_34_part;
-    factor_150_part = -factor_109_root_1_part*product_in_factor_137_root_3_part;
-    product_in_factor_151_part = factor_34_part*factor_47_root_3_part;
-    factor_151_part = factor_109_root_3_part*product_in_factor_151_part;
-    product_in_factor_154_part = factor_34_root_1_part*factor_8_part;
-    product_in_factor_154_part_2 = factor_47_root_3_part*product_in_factor_154_part;
-    factor_154_part = -factor_109_root_1_root_3_part*product_in_factor_154_part_2;
-    factor_156_part = factor_150_part + factor_151_part + factor_154_part + factor_109_part*factor_44_part;
-    factor_160_part = factor_116_root_1_part*product_in_factor_131_root_3_part;
-    product_in_factor_161_part = factor_34_part*factor_49_root_3_part;
-    factor_161_part = -factor_116_root_3_part*product_in_factor_161_part;
-    product_in_factor_163_part = factor_49_root_3_part*product_in_factor_154_part;
-    factor_163_part = factor_116_root_1_root_3_part*product_in_factor_163_part;
-    factor_166_part = factor_160_part + factor_161_part + factor_163_part - factor_116_part*factor_52_part;
-    cos_q23_part = factor_156_part + factor_166_part;
-    factor_188_root_1_part = r12_from_q1_root_1_part*cos_q23_part;
-    product_in_factor_127_root_1_part = factor_109_root_3_part*factor_34_root_1_part;
-    factor_127_root_1_part = factor_49_root_3_part*product_in_factor_127_root_1_part;
-    factor_130_root_1_part = factor_109_root_1_root_3_part*product_in_factor_161_part;
-    factor_132_root_1_part = factor_127_root_1_part + factor_130_root_1_part
-        + factor_109_part*factor_52_root_1_part + factor_109_root_1_part*factor_52_part;
-    product_in_factor_138_root_1_part = factor_116_root_3_part*factor_34_root_1_part;
-    factor_138_root_1_part = factor_47_root_3_part*product_in_factor_138_root_1_part;
-    factor_141_root_1_part = factor_116_root_1_root_3_part*product_in_factor_151_part;
-    factor_142_root_1_part = factor_138_root_1_part + factor_141_root_1_part
-        + factor_116_part*factor_44_root_1_part + factor_116_root_1_part*factor_44_part;
-    sin_q23_root_1_part = factor_132_root_1_part + factor_142_root_1_part;
-    factor_190_root_1_part = -goal_r32*sin_q23_root_1_part;
-    r12_from_q123_root_1_part = factor_188_root_1_part + factor_190_root_1_part;
-    factor_198_root_1_part = r12_from_q123_root_1_part*cos_q6_tried;
-    factor_176_root_1_part = r11_from_q1_root_1_part*cos_q23_part;
-    factor_178_root_1_part = -goal_r31*sin_q23_root_1_part;
-    r11_from_q123_root_1_part = factor_176_root_1_part + factor_178_root_1_part;
-    factor_202_root_1_part = r11_from_q123_root_1_part*sin_q6_tried;
-    r12_from_q123_before_q6_root_1_part = factor_198_root_1_part + factor_202_root_1_part;
-    factor_151_root_1_part = factor_47_root_3_part*product_in_factor_127_root_1_part;
-    factor_155_root_1_part = factor_109_root_1_root_3_part*product_in_factor_151_part;
-    factor_156_root_1_part = factor_151_root_1_part + factor_155_root_1_part
-        + factor_109_part*factor_44_root_1_part + factor_109_root_1_part*factor_44_part;
-    factor_161_root_1_part = -factor_49_root_3_part*product_in_factor_138_root_1_part;
-    factor_164_root_1_part = -factor_116_root_1_root_3_part*product_in_factor_161_part;
-    factor_166_root_1_part = factor_161_root_1_part + factor_164_root_1_part
-        - factor_116_part*factor_52_root_1_part - factor_116_root_1_part*factor_52_part;
-    cos_q23_root_1_part = factor_156_root_1_part + factor_166_root_1_part;
-    factor_186_part = -product_in_factor_187_root_3_part*cos_q23_root_1_part;
-    factor_126_part = -factor_109_root_1_part*product_in_factor_131_root_3_part;
-    factor_127_part = factor_109_root_3_part*product_in_factor_161_part;
-    factor_129_part = -factor_109_root_1_root_3_part*product_in_factor_163_part;
-    factor_132_part = factor_126_part + factor_127_part + factor_129_part + factor_109_part*factor_52_part;
-    factor_136_part = -factor_116_root_1_part*product_in_factor_137_root_3_part;
-    factor_138_part = factor_116_root_3_part*product_in_factor_151_part;
-    factor_140_part = -factor_116_root_1_root_3_part*product_in_factor_154_part_2;
-    factor_142_part = factor_136_part + factor_138_part + factor_140_part + factor_116_part*factor_44_part;
-    sin_q23_part = factor_132_part + factor_142_part;
-    factor_190_part = -goal_r32*sin_q23_part;
-    r12_from_q123_part = factor_186_part + factor_190_part;
-    factor_198_part = r12_from_q123_part*cos_q6_tried;
-    factor_174_part = -product_in_factor_175_root_3_part*cos_q23_root_1_part;
-    factor_178_part = -goal_r31*sin_q23_part;
-    r11_from_q123_part = factor_174_part + factor_178_part;
-    factor_202_part = r11_from_q123_part*sin_q6_tried;
-    r12_from_q123_before_q6_part = factor_198_part + factor_202_part;
-    factor_308_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
-    product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part;
-    factor_312_part = product_310_root_1_part*product_310_root_1_part;
-    factor_313_part = -factor_312_part*factor_8_part;
-    factor_304_part = -factor_302_root_1_part*product_in_factor_154_part;
-    factor_305_part = factor_304_part + factor_302_part*factor_34_part;
-    factor_307_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
-    factor_308_part = factor_307_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
-    product_310_part = factor_308_part - factor_305_part;
-    factor_314_part = product_310_part*product_310_part;
-    product_315_part = factor_314_part - factor_313_part;
-    taken = 0.09523809523809523*factor_106_part*factor_8_part*factor_8_part*product_315_part;
+    factor_218_root_1_part = factor_215_part*factor_36_root_1_part + factor_215_root_1_part*factor_36_part;
+    factor_154_part = -factor_113_root_1_part*product_in_factor_141_root_3_part;
+    product_in_factor_155_part = factor_36_part*factor_50_root_3_part;
+    factor_155_part = factor_113_root_3_part*product_in_factor_155_part;
+    product_in_factor_158_part = factor_36_root_1_part*factor_8_part;
+    product_in_factor_158_part_2 = factor_50_root_3_part*product_in_factor_158_part;
+    factor_158_part = -factor_113_root_1_root_3_part*product_in_factor_158_part_2;
+    factor_160_part = factor_154_part + factor_155_part + factor_158_part + factor_113_part*factor_47_part;
+    factor_164_part = factor_120_root_1_part*product_in_factor_135_root_3_part;
+    product_in_factor_165_part = factor_36_part*factor_52_root_3_part;
+    factor_165_part = -factor_120_root_3_part*product_in_factor_165_part;
+    product_in_factor_167_part = factor_52_root_3_part*product_in_factor_158_part;
+    factor_167_part = factor_120_root_1_root_3_part*product_in_factor_167_part;
+    factor_170_part = factor_164_part + factor_165_part + factor_167_part - factor_120_part*factor_55_part;
+    cos_q23_part = factor_160_part + factor_170_part;
+    factor_192_root_1_part = r12_from_q1_root_1_part*cos_q23_part;
+    product_in_factor_131_root_1_part = factor_113_root_3_part*factor_36_root_1_part;
+    factor_131_root_1_part = factor_52_root_3_part*product_in_factor_131_root_1_part;
+    factor_134_root_1_part = factor_113_root_1_root_3_part*product_in_factor_165_part;
+    factor_136_root_1_part = factor_131_root_1_part + factor_134_root_1_part
+        + factor_113_part*factor_55_root_1_part + factor_113_root_1_part*factor_55_part;
+    product_in_factor_142_root_1_part = factor_120_root_3_part*factor_36_root_1_part;
+    factor_142_root_1_part = factor_50_root_3_part*product_in_factor_142_root_1_part;
+    factor_145_root_1_part = factor_120_root_1_root_3_part*product_in_factor_155_part;
+    factor_146_root_1_part = factor_142_root_1_part + factor_145_root_1_part
+        + factor_120_part*factor_47_root_1_part + factor_120_root_1_part*factor_47_part;
+    sin_q23_root_1_part = factor_136_root_1_part + factor_146_root_1_part;
+    factor_194_root_1_part = -goal_r32*sin_q23_root_1_part;
+    r12_from_q123_root_1_part = factor_192_root_1_part + factor_194_root_1_part;
+    factor_202_root_1_part = r12_from_q123_root_1_part*cos_q6_tried;
+    factor_180_root_1_part = r11_from_q1_root_1_part*cos_q23_part;
+    factor_182_root_1_part = -goal_r31*sin_q23_root_1_part;
+    r11_from_q123_root_1_part = factor_180_root_1_part + factor_182_root_1_part;
+    factor_206_root_1_part = r11_from_q123_root_1_part*sin_q6_tried;
+    r12_from_q123_before_q6_root_1_part = factor_202_root_1_part + factor_206_root_1_part;
+    factor_155_root_1_part = factor_50_root_3_part*product_in_factor_131_root_1_part;
+    factor_159_root_1_part = factor_113_root_1_root_3_part*product_in_factor_155_part;
+    factor_160_root_1_part = factor_155_root_1_part + factor_159_root_1_part
+        + factor_113_part*factor_47_root_1_part + factor_113_root_1_part*factor_47_part;
+    factor_165_root_1_part = -factor_52_root_3_part*product_in_factor_142_root_1_part;
+    factor_168_root_1_part = -factor_120_root_1_root_3_part*product_in_factor_165_part;
+    factor_170_root_1_part = factor_165_root_1_part + factor_168_root_1_part
+        - factor_120_part*factor_55_root_1_part - factor_120_root_1_part*factor_55_part;
+    cos_q23_root_1_part = factor_160_root_1_part + factor_170_root_1_part;
+    factor_190_part = -product_in_factor_191_root_3_part*cos_q23_root_1_part;
+    factor_130_part = -factor_113_root_1_part*product_in_factor_135_root_3_part;
+    factor_131_part = factor_113_root_3_part*product_in_factor_165_part;
+    factor_133_part = -factor_113_root_1_root_3_part*product_in_factor_167_part;
+    factor_136_part = factor_130_part + factor_131_part + factor_133_part + factor_113_part*factor_55_part;
+    factor_140_part = -factor_120_root_1_part*product_in_factor_141_root_3_part;
+    factor_142_part = factor_120_root_3_part*product_in_factor_155_part;
+    factor_144_part = -factor_120_root_1_root_3_part*product_in_factor_158_part_2;
+    factor_146_part = factor_140_part + factor_142_part + factor_144_part + factor_120_part*factor_47_part;
+    sin_q23_part = factor_136_part + factor_146_part;
+    factor_194_part = -goal_r32*sin_q23_part;
+    r12_from_q123_part = factor_190_part + factor_194_part;
+    factor_202_part = r12_from_q123_part*cos_q6_tried;
+    factor_178_part = -product_in_factor_179_root_3_part*cos_q23_root_1_part;
+    factor_182_part = -goal_r31*sin_q23_part;
+    r11_from_q123_part = factor_178_part + factor_182_part;
+    factor_206_part = r11_from_q123_part*sin_q6_tried;
+    r12_from_q123_before_q6_part = factor_202_part + factor_206_part;
+    factor_221_root_1_part = 2.0*r12_from_q123_before_q6_part*r12_from_q123_before_q6_root_1_part;
+    product_223_root_1_part = factor_221_root_1_part - factor_218_root_1_part;
+    factor_225_part = product_223_root_1_part*product_223_root_1_part;
+    factor_226_part = -factor_225_part*factor_8_part;
+    factor_217_part = -factor_215_root_1_part*product_in_factor_158_part;
+    factor_218_part = factor_217_part + factor_215_part*factor_36_part;
+    factor_220_part = -factor_8_part*r12_from_q123_before_q6_root_1_part*r12_from_q123_before_q6_root_1_part;
+    factor_221_part = factor_220_part + r12_from_q123_before_q6_part*r12_from_q123_before_q6_part;
+    product_223_part = factor_221_part - factor_218_part;
+    factor_227_part = product_223_part*product_223_part;
+    cleared_by = factor_109_part*factor_8_part*factor_8_part;
+    product_228_part = factor_227_part - factor_226_part;
+    taken = 0.09523809523809523*cleared_by*product_228_part;
     level = 0.5*taken;
     cos_2 = cos_q6_tried*cos_q6_tried - sin_q6_tried*sin_q6_tried;
     sin_2 = 2.0*cos_q6_tried*sin_q6_tried;
@@ -445,6 +451,7 @@ static softkin_status find_compute_wave(const void *machine, const double *given
       break;
     }
     sample = 1 + sample;
+    size_of_terms = size_of_terms + fabs(cleared_by)*(1e-12 + fabs(factor_226_part) + fabs(factor_227_part));
     wave_cos_0 = level + wave_cos_0;
     wave_cos_1 = wave_cos_1 + taken*cos_q6_tried;
     wave_cos_2 = wave_cos_2 + taken*cos_2;
@@ -475,8 +482,8 @@ static softkin_status find_compute_wave(const void *machine, const double *given
   const double sum_in_rounding_0_6 = fabs(wave_cos_4) + fabs(wave_sin_4);
   const double sum_in_rounding_0_7 = fabs(wave_cos_8) + fabs(wave_sin_8);
   const double sum_in_rounding_0_8 = fabs(wave_cos_5) + fabs(wave_sin_5);
-  const double rounding_0 = 1e-14
-      *(sum_in_rounding_0 + sum_in_rounding_0_2 + sum_in_rounding_0_3 + sum_in_rounding_0_4
+  const double rounding_0 = 1e-16*size_of_terms
+      + 1e-14*(sum_in_rounding_0 + sum_in_rounding_0_2 + sum_in_rounding_0_3 + sum_in_rounding_0_4
       + sum_in_rounding_0_5 + sum_in_rounding_0_6 + sum_in_rounding_0_7 + sum_in_rounding_0_8
       + fabs(wave_cos_0));
   const double size_of_wave_cos_9_times_1000 = 1000.0*fabs(wave_cos_9);
@@ -764,15 +771,15 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried
       + wrist_z_from_q1_tried*wrist_z_from_q1_tried);
   const double r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried;
-  const double a2_plus_length_25_minus_reach_tried = k->a2_plus_length_25 - reach_tried;
-  const double a2_plus_length_25_plus_reach_tried = k->a2_plus_length_25 + reach_tried;
+  const double a2_plus_length_26_minus_reach_tried = k->a2_plus_length_26 - reach_tried;
+  const double a2_plus_length_26_plus_reach_tried = k->a2_plus_length_26 + reach_tried;
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_tried = a2_plus_length_25_minus_reach_tried*a2_plus_length_25_plus_reach_tried;
-  const double a2_minus_length_25_minus_reach_tried = k->a2_minus_length_25 - reach_tried;
-  const double a2_minus_length_25_plus_reach_tried = k->a2_minus_length_25 + reach_tried;
+  const double one_less_cos_q3_tried = a2_plus_length_26_minus_reach_tried*a2_plus_length_26_plus_reach_tried;
+  const double a2_minus_length_26_minus_reach_tried = k->a2_minus_length_26 - reach_tried;
+  const double a2_minus_length_26_plus_reach_tried = k->a2_minus_length_26 + reach_tried;
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_tried = -a2_minus_length_25_minus_reach_tried
-      *a2_minus_length_25_plus_reach_tried;
+  const double one_plus_cos_q3_tried = -a2_minus_length_26_minus_reach_tried
+      *a2_minus_length_26_plus_reach_tried;
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double slope_wrist_z_tried = k->j6_offset_x*(goal_r32*cos_q6_tried + goal_r31*sin_q6_tried);
@@ -782,10 +789,10 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_reach_tried = reach_tried > 0.0
       ? (slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + slope_wrist_z_tried*wrist_z_from_q1_tried)
       /(reach_tried > 0.0 ? reach_tried : 1.0) : 0.0;
-  const double slope_one_less_cos_q3_tried = (a2_plus_length_25_minus_reach_tried
-      - a2_plus_length_25_plus_reach_tried)*slope_reach_tried;
-  const double slope_one_plus_cos_q3_tried = (a2_minus_length_25_plus_reach_tried
-      - a2_minus_length_25_minus_reach_tried)*slope_reach_tried;
+  const double slope_one_less_cos_q3_tried = (a2_plus_length_26_minus_reach_tried
+      - a2_plus_length_26_plus_reach_tried)*slope_reach_tried;
+  const double slope_one_plus_cos_q3_tried = (a2_minus_length_26_plus_reach_tried
+      - a2_minus_length_26_minus_reach_tried)*slope_reach_tried;
   double divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried;
   if (sum_q3_tried > 0.0) {
     divisor_of_cos_q3_tried = sum_q3_tried;
@@ -802,8 +809,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double root_of_sin_swing_q3_tried = softkin_root(sine_square_q3_tried);
   const double sin_swing_q3_tried = 2.0*one_by_sum_q3_tried*root_of_sin_swing_q3_tried*sign_elbow_tried;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_tried = k->a3_by_length_25*cos_swing_q3_tried + k->d4_by_length_25*sin_swing_q3_tried;
-  const double sin_q3_tried = k->a3_by_length_25*sin_swing_q3_tried - k->d4_by_length_25*cos_swing_q3_tried;
+  const double cos_q3_tried = k->a3_by_length_26*cos_swing_q3_tried + k->d4_by_length_26*sin_swing_q3_tried;
+  const double sin_q3_tried = k->a3_by_length_26*sin_swing_q3_tried - k->d4_by_length_26*cos_swing_q3_tried;
   const double slope_cos_swing_q3_tried = (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried
       - slope_divisor_of_cos_q3_tried*cos_swing_q3_tried)*one_by_sum_q3_tried;
   const double slope_sine_square_q3_tried = one_less_cos_q3_tried*slope_one_plus_cos_q3_tried
@@ -813,10 +820,10 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       : 0.0;
   const double slope_sin_swing_q3_tried = (2.0*sign_elbow_tried*slope_root_of_sin_swing_q3_tried
       - slope_divisor_of_cos_q3_tried*sin_swing_q3_tried)*one_by_sum_q3_tried;
-  const double slope_cos_q3_tried = k->a3_by_length_25*slope_cos_swing_q3_tried
-      + k->d4_by_length_25*slope_sin_swing_q3_tried;
-  const double slope_sin_q3_tried = k->a3_by_length_25*slope_sin_swing_q3_tried
-      - k->d4_by_length_25*slope_cos_swing_q3_tried;
+  const double slope_cos_q3_tried = k->a3_by_length_26*slope_cos_swing_q3_tried
+      + k->d4_by_length_26*slope_sin_swing_q3_tried;
+  const double slope_sin_q3_tried = k->a3_by_length_26*slope_sin_swing_q3_tried
+      - k->d4_by_length_26*slope_cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried;
   if (reach_tried > k->machine_scale_times_free_angle) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
@@ -930,11 +937,11 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried
       + wrist_z_from_q1_tried*wrist_z_from_q1_tried);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_tried = (k->a2_plus_length_25 + reach_tried)
-      *(k->a2_plus_length_25 - reach_tried);
+  const double one_less_cos_q3_tried = (k->a2_plus_length_26 + reach_tried)
+      *(k->a2_plus_length_26 - reach_tried);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_tried = (reach_tried - k->a2_minus_length_25)
-      *(k->a2_minus_length_25 + reach_tried);
+  const double one_plus_cos_q3_tried = (reach_tried - k->a2_minus_length_26)
+      *(k->a2_minus_length_26 + reach_tried);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double divisor_of_cos_q3_tried = sum_q3_tried > 0.0 ? sum_q3_tried : 1.0;
@@ -945,8 +952,8 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double sin_swing_q3_tried = 2.0*softkin_root(sine_square_q3_tried)*sign_elbow_tried
       /divisor_of_cos_q3_tried;
   /* addition theorem: plus the angle of the direction from which the cosine is measured */
-  const double cos_q3_tried = k->a3_by_length_25*cos_swing_q3_tried + k->d4_by_length_25*sin_swing_q3_tried;
-  const double sin_q3_tried = k->a3_by_length_25*sin_swing_q3_tried - k->d4_by_length_25*cos_swing_q3_tried;
+  const double cos_q3_tried = k->a3_by_length_26*cos_swing_q3_tried + k->d4_by_length_26*sin_swing_q3_tried;
+  const double sin_q3_tried = k->a3_by_length_26*sin_swing_q3_tried - k->d4_by_length_26*cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried;
   if (reach_tried > k->machine_scale_times_free_angle) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
@@ -998,8 +1005,9 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
   const ac6_rzryryrxryrz_j6offset_machine *k = machine;
   const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], q1 = given[12],
-      q2 = given[13], q3 = given[14], q4 = given[15], q5 = given[16], q6 = given[17];
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], q1 = given[13],
+      q2 = given[14], q3 = given[15], q4 = given[16], q5 = given[17], q6 = given[18];
+  const bool is_newton = given[12] != 0.0;
   const double cos_q1 = cos(q1);
   const double q2_plus_q3 = q2 + q3;
   const double cos_q23 = cos(q2_plus_q3);
@@ -1047,10 +1055,10 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
   const double z = z_at_q6 + k->d6*r33_at_q5;
   const double error_3 = (goal_z - z)*k->one_by_machine_scale;
   const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r32_at_q4 = cos_q23*sin_q4;
   const double sin_q6 = sin(q6);
   const double cos_q6 = cos(q6);
   const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
-  const double r32_at_q4 = cos_q23*sin_q4;
   const double r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
   const double r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
   const double r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
@@ -1064,6 +1072,7 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
   const double error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5
       - goal_r11*r21_at_q6 - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
   const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double rate_2_1 = k->one_by_machine_scale*x;
   const double z_minus_d1 = z - k->d1;
   const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
   const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
@@ -1078,6 +1087,20 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
   const double z_minus_z_at_q6 = z - z_at_q6;
   const double y_minus_y_at_q6 = y - y_at_q6;
   const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
+  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
   /* 3 where the rotations agree, -1 where they are half a turn apart */
   const double agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
       + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
@@ -1089,23 +1112,8 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
   const double damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
   const double product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3
       + rate_1_4*rate_1_4 + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
-  const double rate_2_1 = k->one_by_machine_scale*x;
-  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
-  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-  const double x_minus_x_at_q4 = x - x_at_q4;
-  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-  const double x_minus_x_at_q5 = x - x_at_q5;
-  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
-  const double x_minus_x_at_q6 = x - x_at_q6;
-  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
   const double product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
       + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
-  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
-  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
-  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
-  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
-  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
   const double product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
       + rate_1_6*rate_3_6;
   const double rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
@@ -1141,28 +1149,48 @@ static softkin_status find_step_on_closure(const void *machine, const double *gi
       + r23_at_q5*r23_at_q5;
   const double product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
   const double product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
-  /* damped least squares: the shortest step that cancels the error */
-  double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
-      error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
-      {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
-      {product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6, error_4},
-      {product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6, error_5},
-      {product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6, error_6}};
+  /* damped least squares, or the step that cancels the error */
+  double system[6][7] = {{(is_newton ? rate_1_1 : product_1_1), (is_newton ? rate_1_2 : product_1_2),
+      (is_newton ? rate_1_3 : product_1_3), (is_newton ? rate_1_4 : product_1_4),
+      (is_newton ? rate_1_5 : product_1_5), (is_newton ? rate_1_6 : product_1_6), error_1},
+      {(is_newton ? rate_2_1 : product_1_2), (is_newton ? rate_2_2 : product_2_2),
+      (is_newton ? rate_2_3 : product_2_3), (is_newton ? rate_2_4 : product_2_4),
+      (is_newton ? rate_2_5 : product_2_5), (is_newton ? rate_2_6 : product_2_6), error_2},
+      {(is_newton ? 0.0 : product_1_3), (is_newton ? rate_3_2 : product_2_3),
+      (is_newton ? rate_3_3 : product_3_3), (is_newton ? rate_3_4 : product_3_4),
+      (is_newton ? rate_3_5 : product_3_5), (is_newton ? rate_3_6 : product_3_6), error_3},
+      {(is_newton ? 0.0 : product_1_4), (is_newton ? -sin_q1 : product_2_4),
+      (is_newton ? -sin_q1 : product_3_4), (is_newton ? r11_at_q23 : product_4_4),
+      (is_newton ? r12_at_q4 : product_4_5), (is_newton ? r13_at_q5 : product_4_6), error_4},
+      {(is_newton ? 0.0 : product_1_5), (is_newton ? cos_q1 : product_2_5),
+      (is_newton ? cos_q1 : product_3_5), (is_newton ? r21_at_q23 : product_4_5),
+      (is_newton ? r22_at_q4 : product_5_5), (is_newton ? r23_at_q5 : product_5_6), error_5},
+      {(is_newton ? 1.0 : product_1_6), (is_newton ? 0.0 : product_2_6), (is_newton ? 0.0 : product_3_6),
+      (is_newton ? -sin_q23 : product_4_6), (is_newton ? r32_at_q4 : product_5_6),
+      (is_newton ? r33_at_q5 : product_6_6), error_6}};
   softkin_solve(&system[0][0], 6, 1);
   const double multiplier_1 = system[0][6], multiplier_2 = system[1][6], multiplier_3 = system[2][6],
       multiplier_4 = system[3][6], multiplier_5 = system[4][6], multiplier_6 = system[5][6];
-  const double step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
-  const double sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
-  const double step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2
-      + multiplier_3*rate_3_2;
-  const double step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3
-      + multiplier_3*rate_3_3;
-  const double step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4
-      + multiplier_4*r11_at_q23 + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
-  const double step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5
-      + multiplier_4*r12_at_q4 + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
-  const double step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6
-      + multiplier_4*r13_at_q5 + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
+  double step_q1, step_q2, step_q3, step_q4, step_q5, step_q6;
+  if (is_newton) {
+    step_q1 = multiplier_1;
+    step_q2 = multiplier_2;
+    step_q3 = multiplier_3;
+    step_q4 = multiplier_4;
+    step_q5 = multiplier_5;
+    step_q6 = multiplier_6;
+  } else {
+    step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    const double sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
+    step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
+        + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
+    step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
+        + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
+    step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
+        + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
+  }
   const double step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
       + step_q5*step_q5 + step_q6*step_q6);
   const double shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
@@ -1293,7 +1321,8 @@ static softkin_status find_root(const void *machine, const double *given, double
   const int wanted_crossing = (int)given[19], wanted_elbow = (int)given[20],
       wanted_shoulder = (int)given[21], wanted_wrist = (int)given[22];
   const bool looked_for = given[13] != 0.0, onward = given[15] != 0.0;
-  const double sum_in_way_ends_2 = 360.0*SOFTKIN_DEGREE - 1e-7;
+  const double sum_in_end_of_way = 360.0*SOFTKIN_DEGREE - 1e-7;
+  const double value_in_end_of_way = onward ? sum_in_end_of_way : 180.0*SOFTKIN_DEGREE;
   /* one step of the search */
   int stage = 0;
   int direction = 1;
@@ -1305,6 +1334,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   double aside = 0.0;
   double error_before = 0.0;
   int steps_left = 0;
+  bool is_newton = false;
   bool was_mirrored = false;
   double nearest = 9.0;
   int passes_left = 1500;
@@ -1341,9 +1371,9 @@ static softkin_status find_root(const void *machine, const double *given, double
   double met_from_q6 = 0.0;
   double kept_q6 = 0.0;
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
-      length_2, growth_2, size, best_now, least_now, way_now, best_now_minus_way_now, newton_place, begun_q1,
-      begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3, moved_q4,
-      moved_q5, moved_q6, sum_in_way_ends, start_minus_q6, way_ahead, nearest_now, moved, place_next,
+      length_2, growth_2, size, best_now, way_now, best_now_minus_way_now, newton_place, settled, least_now,
+      begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3,
+      moved_q4, moved_q5, moved_q6, end_of_way, moved, start_minus_q6, way_ahead, nearest_now, place_next,
       width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now,
       error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
       at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
@@ -1354,9 +1384,9 @@ static softkin_status find_root(const void *machine, const double *given, double
       met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
-  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends, is_better,
-      is_shortest, mirrors, part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first,
-      seeks_length, turns_back, is_over, was_mirrored_next;
+  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends,
+      turns_back, is_over, is_shortest, mirrors, part_ends, start_ends, is_better, is_nearest, side_ends,
+      part_is_done, begins, is_first, seeks_length, is_newton_next, was_mirrored_next;
   for (int pass = 0; pass < 1501; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
@@ -1392,22 +1422,23 @@ static softkin_status find_root(const void *machine, const double *given, double
     size = stage == 1 ? (number_of_start > 12 ? length_2 : length_1) : fabs(remainder);
     is_less = size < least;
     best_now = is_less ? at : best;
-    least_now = is_less ? size : least;
     way_now = is_less ? real_of_direction*remainder/(fabs(rate) > 0.0 ? rate : 1e30) : 0.25*way;
     best_now_minus_way_now = best_now - way_now;
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
+    settled = is_less && (fabs(at - newton_place) <= 1e-10) ? newton_place : best_now;
+    least_now = is_less ? size : least;
     is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 5) || (fabs(at - newton_place) <= 1e-10));
-    is_known = (fabs(best_now - settled_1) <= 1e-9) || (fabs(best_now - settled_2) <= 1e-9)
-        || (fabs(best_now - settled_3) <= 1e-9) || (fabs(best_now - settled_4) <= 1e-9)
-        || (fabs(best_now - settled_5) <= 1e-9) || (fabs(best_now - settled_6) <= 1e-9);
+    is_known = (fabs(settled - settled_1) <= 1e-12) || (fabs(settled - settled_2) <= 1e-12)
+        || (fabs(settled - settled_3) <= 1e-12) || (fabs(settled - settled_4) <= 1e-12)
+        || (fabs(settled - settled_5) <= 1e-12) || (fabs(settled - settled_6) <= 1e-12);
     is_near = is_settled && (((!is_known) && (width > 1e-6))
         || ((least_now <= 0.001) && (width <= 1e-6) && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
           goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
-          start_ + best_now*real_of_direction, wanted_elbow, wanted_shoulder};
+          start_ + real_of_direction*settled, wanted_elbow, wanted_shoulder};
       const softkin_status status_of_3 = find_joints_at(k, arguments_of_3, results_of_3, why);
       if (status_of_3 != SOFTKIN_OK) {
         return status_of_3;
@@ -1422,7 +1453,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     double results_of_4[7] = {0.0};
     if (stage == 3) {
       const double arguments_of_4[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, q1, q2, q3, q4, q5, q6};
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, is_newton, q1, q2, q3, q4, q5, q6};
       const softkin_status status_of_4 = find_step_on_closure(k, arguments_of_4, results_of_4, why);
       if (status_of_4 != SOFTKIN_OK) {
         return status_of_4;
@@ -1448,18 +1479,10 @@ static softkin_status find_root(const void *machine, const double *given, double
       }
     }
     fits = results_of_5[0] != 0.0;
-    sum_in_way_ends = 2e-7 + nearest;
-    way_ends = (stage == 0) && (width <= 0.0)
-        && (place_ >= (onward ? (nearest < 360.0*SOFTKIN_DEGREE ? sum_in_way_ends : sum_in_way_ends_2)
-        : (nearest < 180.0*SOFTKIN_DEGREE ? sum_in_way_ends : 180.0*SOFTKIN_DEGREE)));
-    start_minus_q6 = start_ - q6;
-    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
-        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
-        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
-        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
-    is_better = fits && meets_pose && (way_ahead < nearest)
-        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_way_ends_2)));
-    nearest_now = is_better ? way_ahead : nearest;
+    end_of_way = nearest < value_in_end_of_way ? nearest + 1e-7*(onward ? -2.0 : 2.0) : value_in_end_of_way;
+    way_ends = (stage == 0) && (place_ >= end_of_way) && (width <= 0.0);
+    turns_back = way_ends && (!onward) && (direction > 0);
+    is_over = (passes_left <= 0) || (way_ends && (!turns_back));
     is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
         + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
@@ -1471,6 +1494,14 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 15 ? number_of_start_plus_one : 0));
+    start_minus_q6 = start_ - q6;
+    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
+        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
+    is_better = fits && meets_pose && (way_ahead < nearest)
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
+    nearest_now = is_better ? way_ahead : nearest;
     is_nearest = nearest_now <= 2e-7 + place_;
     side_ends = start_ends && (!is_nearest) && (side > 0) && (is_nearest || (next_number == 0));
     part_is_done = start_ends && (!side_ends) && (is_nearest || (next_number == 0));
@@ -1481,9 +1512,6 @@ static softkin_status find_root(const void *machine, const double *given, double
     next_stage = is_near || mirrors || ((!steps_end) && (stage == 3)) ? 3
         : (seeks_length || ((!is_shortest) && (stage == 1)) ? 1
         : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
-    turns_back = way_ends && (!onward) && (direction > 0);
-    is_over = (passes_left <= 0) || (way_ends && (!turns_back))
-        || (onward && (next_stage == 0) && (nearest_now <= 2e-7 + place_plus_width));
     direction_next = turns_back ? -1 : direction;
     place_next = turns_back ? 0.0
         : (part_is_done ? place_plus_width
@@ -1502,6 +1530,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     aside_now = is_shortest ? (bend_now > 0.0 ? 1.7*least_now/softkin_root(bend_now_2) : 0.0) : aside;
     error_before_next = is_near || mirrors ? 9.0 : error;
     steps_left_next = is_near || mirrors ? 64 : steps_left + (error > 0.999*error_before ? -8 : -1);
+    is_newton_next = (!is_near) && (!is_newton) && (!mirrors) && (error > 0.999*error_before);
     was_mirrored_next = (!is_near) && (mirrors || was_mirrored);
     passes_left_next = passes_left - 1;
     spread = 0.25*width;
@@ -1535,7 +1564,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     last_next = begins || is_shortest ? place_of_start : at;
     growth_before_next = begins || is_shortest ? 0.0 : growth;
     bend_next = begins || is_shortest ? 0.0 : bend_now;
-    settled_1_next = is_first ? 9.0 : (is_near ? best_now : settled_1);
+    settled_1_next = is_first ? 9.0 : (is_near ? settled : settled_1);
     settled_2_next = is_first ? 9.0 : (is_near ? settled_1 : settled_2);
     settled_3_next = is_first ? 9.0 : (is_near ? settled_2 : settled_3);
     settled_4_next = is_first ? 9.0 : (is_near ? settled_3 : settled_4);
@@ -1572,6 +1601,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     aside = aside_now;
     error_before = error_before_next;
     steps_left = steps_left_next;
+    is_newton = is_newton_next;
     was_mirrored = was_mirrored_next;
     nearest = nearest_now;
     passes_left = passes_left_next;
@@ -1728,7 +1758,7 @@ static softkin_status find_forward(const void *machine, const double *axes, soft
   const double wrist_y_closed = y - d6_times_r23_at_q5;
   const double sin_q3_closed = sin(q3);
   const double cos_q3_closed = cos(q3);
-  const double margin_elbow_closed = (k->a3*sin_q3_closed + k->d4*cos_q3_closed)*k->one_by_length_25;
+  const double margin_elbow_closed = (k->a3*sin_q3_closed + k->d4*cos_q3_closed)*k->one_by_length_26;
   double branch_shoulder, branch_wrist, branch_crossing;
   if (k->searched) {
     /* wrist centre: the last joints do not move this point */
@@ -1795,11 +1825,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   const double reach_closed = sqrt(wrist_x_from_q1_closed*wrist_x_from_q1_closed
       + wrist_z_from_q1_closed*wrist_z_from_q1_closed);
   /* law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale */
-  const double one_less_cos_q3_closed = (k->a2_plus_length_25 + reach_closed)
-      *(k->a2_plus_length_25 - reach_closed);
+  const double one_less_cos_q3_closed = (k->a2_plus_length_26 + reach_closed)
+      *(k->a2_plus_length_26 - reach_closed);
   /* 1 + cosine, times the scale */
-  const double one_plus_cos_q3_closed = (reach_closed - k->a2_minus_length_25)
-      *(k->a2_minus_length_25 + reach_closed);
+  const double one_plus_cos_q3_closed = (reach_closed - k->a2_minus_length_26)
+      *(k->a2_minus_length_26 + reach_closed);
   /* sum of both, twice the scale: cosine² + sine² is then 1 */
   const double sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed;
   const double divisor_of_cos_q3_closed = sum_q3_closed > 0.0 ? sum_q3_closed : 1.0;
@@ -1808,8 +1838,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!(k->searched || (fabs(cos_swing_q3_closed) <= 1.0000000000005))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach_closed - k->a2_plus_length_25 > fabs(k->a2_minus_length_25) - reach_closed ? reach_closed
-        - k->a2_plus_length_25 : fabs(k->a2_minus_length_25) - reach_closed), 0);
+        (reach_closed - k->a2_plus_length_26 > fabs(k->a2_minus_length_26) - reach_closed ? reach_closed
+        - k->a2_plus_length_26 : fabs(k->a2_minus_length_26) - reach_closed), 0);
   }
   /* without an offset, only the first branch of the crossing has a solution */
   if (!(k->searched || (sigma_crossing > 0))) {
@@ -1833,10 +1863,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* root search along A6 */
   double results_of_2[8];
   const double arguments_of_2[] = {bound_of_fifth, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z,
-      k->searched, noise, false, reference_a1, reference_a2, reference_a6, sigma_crossing, sigma_elbow,
-      sigma_shoulder, sigma_wrist, wave_cos_0, wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5,
-      wave_cos_6, wave_cos_7, wave_cos_8, wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5,
-      wave_sin_6, wave_sin_7, wave_sin_8};
+      k->searched, noise, false, reference_a1, reference_a2,
+      softkin_angle_of(sin(reference_a6), cos(reference_a6)), sigma_crossing, sigma_elbow, sigma_shoulder,
+      sigma_wrist, wave_cos_0, wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6,
+      wave_cos_7, wave_cos_8, wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6,
+      wave_sin_7, wave_sin_8};
   const softkin_status status_of_2 = find_root(k, arguments_of_2, results_of_2, why);
   if (status_of_2 != SOFTKIN_OK) {
     return status_of_2;
@@ -1878,8 +1909,8 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
         /divisor_of_cos_q3_closed;
     double cos_q2_closed, sin_q2_closed;
     if (reach_closed > k->machine_scale_times_free_angle) {
-      const double arm_along_q2_closed = k->length_25*sin_swing_q3_closed;
-      const double arm_across_q2_closed = k->a2 + k->length_25*cos_swing_q3_closed;
+      const double arm_along_q2_closed = k->length_26*sin_swing_q3_closed;
+      const double arm_across_q2_closed = k->a2 + k->length_26*cos_swing_q3_closed;
       /* rotation by q2 that takes the arm to its target point */
       const double along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed
           + arm_along_q2_closed*wrist_x_from_q1_closed;
@@ -1897,10 +1928,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     }
     q2 = softkin_angle_of(sin_q2_closed, cos_q2_closed);
     /* addition theorem: plus the angle of the direction from which the cosine is measured */
-    const double cos_q3_closed = k->a3_by_length_25*cos_swing_q3_closed
-        + k->d4_by_length_25*sin_swing_q3_closed;
-    const double sin_q3_closed = k->a3_by_length_25*sin_swing_q3_closed
-        - k->d4_by_length_25*cos_swing_q3_closed;
+    const double cos_q3_closed = k->a3_by_length_26*cos_swing_q3_closed
+        + k->d4_by_length_26*sin_swing_q3_closed;
+    const double sin_q3_closed = k->a3_by_length_26*sin_swing_q3_closed
+        - k->d4_by_length_26*cos_swing_q3_closed;
     q3 = softkin_angle_of(sin_q3_closed, cos_q3_closed);
     const double r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed;
     const double sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed;
@@ -2551,7 +2582,7 @@ static softkin_status find_search_given(const void *machine, const softkin_frame
   given[15] = false;
   given[16] = reference_a1;
   given[17] = reference_a2;
-  given[18] = reference_a6;
+  given[18] = softkin_angle_of(sin(reference_a6), cos(reference_a6));
   given[19] = sigma_crossing;
   given[20] = sigma_elbow;
   given[21] = sigma_shoulder;
@@ -2671,20 +2702,22 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
     return SOFTKIN_NOT_INITIALIZED;
   }
   const double machine_scale = p->a1 + p->a2 + p->d4; /* characteristic length of the machine */
-  const double length_25 = sqrt(p->a3*p->a3 + p->d4*p->d4);
+  const double length_26 = sqrt(p->a3*p->a3 + p->d4*p->d4);
+  const double length_26_or_1 = fabs(length_26) > 0.0 ? length_26 : 1.0;
   const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
   const double a1_squared = p->a1*p->a1;
-  const double a2_plus_length_25 = p->a2 + length_25;
-  const double a2_plus_length_25_squared = a2_plus_length_25*a2_plus_length_25;
-  const double a2_minus_length_25 = p->a2 - length_25;
-  const double a2_minus_length_25_squared = a2_minus_length_25*a2_minus_length_25;
+  const double a2_plus_length_26 = p->a2 + length_26;
+  const double a2_plus_length_26_squared = a2_plus_length_26*a2_plus_length_26;
+  const double a2_minus_length_26 = p->a2 - length_26;
+  const double a2_minus_length_26_squared = a2_minus_length_26*a2_minus_length_26;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double twice_a1 = 2.0*p->a1;
-  const double one_by_length_25 = 1.0/length_25;
-  const double d4_by_length_25 = p->d4/length_25;
-  const double a3_by_length_25 = p->a3/length_25;
+  const double one_by_length_26_or_1 = 1.0/length_26_or_1;
+  const double d4_by_length_26 = p->d4/length_26;
+  const double a3_by_length_26 = p->a3/length_26;
   const double one_by_machine_scale = 1.0/machine_scale;
-  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_25);
+  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_26);
+  const double one_by_length_26 = 1.0/length_26;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
   made.single_a1 = window_of_a1.single;
@@ -2722,20 +2755,21 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
-  made.length_25 = length_25;
+  made.length_26 = length_26;
   made.searched = searched;
   made.a1_squared = a1_squared;
-  made.a2_plus_length_25 = a2_plus_length_25;
-  made.a2_plus_length_25_squared = a2_plus_length_25_squared;
-  made.a2_minus_length_25 = a2_minus_length_25;
-  made.a2_minus_length_25_squared = a2_minus_length_25_squared;
+  made.a2_plus_length_26 = a2_plus_length_26;
+  made.a2_plus_length_26_squared = a2_plus_length_26_squared;
+  made.a2_minus_length_26 = a2_minus_length_26;
+  made.a2_minus_length_26_squared = a2_minus_length_26_squared;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.twice_a1 = twice_a1;
-  made.one_by_length_25 = one_by_length_25;
-  made.d4_by_length_25 = d4_by_length_25;
-  made.a3_by_length_25 = a3_by_length_25;
+  made.one_by_length_26_or_1 = one_by_length_26_or_1;
+  made.d4_by_length_26 = d4_by_length_26;
+  made.a3_by_length_26 = a3_by_length_26;
   made.one_by_machine_scale = one_by_machine_scale;
   made.quotient_in_fits = quotient_in_fits;
+  made.one_by_length_26 = one_by_length_26;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, searched, p->warning_distance, 1e-6};
   *(ac6_rzryryrxryrz_j6offset_machine *)machine = made;
   return SOFTKIN_OK;

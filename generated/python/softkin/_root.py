@@ -16,7 +16,7 @@ def every_root(find: Callable[[Values], Any], given: Values, start: int, onward:
     """The joints (radians, the user's unit) at all roots that fit, the nearest to the start first.
 
     find: the program that finds a root: whether there is one, how far it is from the start, and the joints.
-    given: its arguments; start, onward: the places of the start among them, and of the flag that asks for the next root.
+    given: its arguments; start, onward: the places among them of the start, and of the flag that asks for the next root
     """
     reference = given[start]
     for begin in (reference + ELSEWHERE, reference + ELSEWHERE + 1.0):  # a root may stand at the first, too

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 680130 additions, 897145 multiplications, 34612 divisions, 18014 square roots, 36068 sines
-    inverse, all 16 branches: 10882353 additions, 14354416 multiplications, 553792 divisions, 288224 square
+    inverse: 680197 additions, 895668 multiplications, 34612 divisions, 18014 square roots, 36068 sines
+    inverse, all 16 branches: 10883425 additions, 14330784 multiplications, 553792 divisions, 288224 square
     roots, 577088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -91,30 +91,32 @@ class Constants:
         self.lowest_a5, self.highest_a5, self.single_a5, self.mid_a5 = machine._window("a5")
         self.lowest_a6, self.highest_a6, self.single_a6, self.mid_a6 = machine._window("a6")
         machine_scale = a1 + a2 + d4  # characteristic length of the machine
-        length_25 = sqrt(a3 * a3 + d4 * d4)
+        length_26 = sqrt(a3 * a3 + d4 * d4)
+        length_26_or_1 = length_26 if abs(length_26) > 0.0 else 1.0
         searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
         a1_squared = a1 * a1
-        a2_plus_length_25 = a2 + length_25
-        a2_plus_length_25_squared = a2_plus_length_25 * a2_plus_length_25
-        a2_minus_length_25 = a2 - length_25
-        a2_minus_length_25_squared = a2_minus_length_25 * a2_minus_length_25
+        a2_plus_length_26 = a2 + length_26
+        a2_plus_length_26_squared = a2_plus_length_26 * a2_plus_length_26
+        a2_minus_length_26 = a2 - length_26
+        a2_minus_length_26_squared = a2_minus_length_26 * a2_minus_length_26
         machine_scale_times_free_angle = 2e-12 * machine_scale
         twice_a1 = 2.0 * a1
-        one_by_length_25 = 1.0 / length_25
-        d4_by_length_25 = d4 / length_25
-        a3_by_length_25 = a3 / length_25
+        one_by_length_26_or_1 = 1.0 / length_26_or_1
+        d4_by_length_26 = d4 / length_26
+        a3_by_length_26 = a3 / length_26
         one_by_machine_scale = 1.0 / machine_scale
-        quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * length_25)
+        quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * length_26)
+        one_by_length_26 = 1.0 / length_26
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.offset_a5, self.offset_a6, self.length_25, self.searched = offset_a5, offset_a6, length_25, searched
-        self.a1_squared, self.a2_plus_length_25 = a1_squared, a2_plus_length_25
-        self.a2_plus_length_25_squared, self.a2_minus_length_25 = a2_plus_length_25_squared, a2_minus_length_25
-        self.a2_minus_length_25_squared = a2_minus_length_25_squared
+        self.offset_a5, self.offset_a6, self.length_26, self.searched = offset_a5, offset_a6, length_26, searched
+        self.a1_squared, self.a2_plus_length_26 = a1_squared, a2_plus_length_26
+        self.a2_plus_length_26_squared, self.a2_minus_length_26 = a2_plus_length_26_squared, a2_minus_length_26
+        self.a2_minus_length_26_squared = a2_minus_length_26_squared
         self.machine_scale_times_free_angle, self.twice_a1 = machine_scale_times_free_angle, twice_a1
-        self.one_by_length_25, self.d4_by_length_25 = one_by_length_25, d4_by_length_25
-        self.a3_by_length_25, self.one_by_machine_scale = a3_by_length_25, one_by_machine_scale
-        self.quotient_in_fits = quotient_in_fits
+        self.one_by_length_26_or_1, self.d4_by_length_26 = one_by_length_26_or_1, d4_by_length_26
+        self.a3_by_length_26, self.one_by_machine_scale = a3_by_length_26, one_by_machine_scale
+        self.quotient_in_fits, self.one_by_length_26 = quotient_in_fits, one_by_length_26
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -126,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset d46281d2838a3676"
+    KEY = "ac6_rzryryrxryrz_j6offset 2814f1fd62d9ef71"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -305,12 +307,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             looked_for,
         ) = given
         k = self._constants
-        a1, a1_squared, a2, a2_minus_length_25_squared = k.a1, k.a1_squared, k.a2, k.a2_minus_length_25_squared
-        a2_plus_length_25_squared, a3, d1, d4, d6 = k.a2_plus_length_25_squared, k.a3, k.d1, k.d4, k.d6
-        j6_offset_x, one_by_length_25, twice_a1 = k.j6_offset_x, k.one_by_length_25, k.twice_a1
+        a1, a1_squared, a2, a2_minus_length_26_squared = k.a1, k.a1_squared, k.a2, k.a2_minus_length_26_squared
+        a2_plus_length_26_squared, a3, d1, d4, d6 = k.a2_plus_length_26_squared, k.a3, k.d1, k.d4, k.d6
+        j6_offset_x, one_by_length_26_or_1, twice_a1 = k.j6_offset_x, k.one_by_length_26_or_1, k.twice_a1
         # the residuals of all branches, multiplied, at equal distances around the circle
         (
             sample,
+            size_of_terms,
             wave_cos_0,
             wave_cos_1,
             wave_cos_2,
@@ -332,263 +335,291 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_8,
             wave_sin_9,
             wave_sin_10,
-        ) = 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        ) = (
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
         for _ in range(22):
             tried = 0.1 + 0.299199300341885 * sample
             cos_q6_tried = cos(tried)
             sin_q6_tried = sin(tried)
             wrist_x_tried = goal_x + (goal_r12 * sin_q6_tried - goal_r11 * cos_q6_tried) * j6_offset_x - d6 * goal_r13
             wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
-            factor_8_part = -wrist_x_tried * wrist_x_tried - wrist_y_tried * wrist_y_tried
             wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * j6_offset_x - d6 * goal_r33
             wrist_z_from_q1_tried = wrist_z_tried - d1
-            factor_9_root_1_part = -wrist_x_tried / factor_8_part
-            factor_13_root_1_part = factor_9_root_1_part * wrist_x_tried
-            factor_11_root_1_part = -wrist_y_tried / factor_8_part
-            factor_14_root_1_part = factor_11_root_1_part * wrist_y_tried
-            wrist_x_from_q1_root_1_part = factor_13_root_1_part + factor_14_root_1_part
-            product_in_factor_17_part = factor_8_part * wrist_x_from_q1_root_1_part
-            factor_17_part = -product_in_factor_17_part * wrist_x_from_q1_root_1_part
-            factor_18_part = a1_squared + factor_17_part
-            length_q2_part = factor_18_part + wrist_z_from_q1_tried * wrist_z_from_q1_tried
-            factor_18_root_1_part = -twice_a1 * wrist_x_from_q1_root_1_part
-            product_in_factor_105_part = factor_18_root_1_part * factor_8_part
-            factor_105_part = factor_18_root_1_part * product_in_factor_105_part
-            factor_106_part = factor_105_part + length_q2_part * length_q2_part
-            factor_27_part = a2_plus_length_25_squared - length_q2_part
-            factor_29_part = length_q2_part - a2_minus_length_25_squared
-            factor_34_part = factor_105_part + factor_27_part * factor_29_part
-            factor_27_part_minus_factor_29_part = factor_27_part - factor_29_part
-            factor_34_root_1_part = factor_18_root_1_part * factor_27_part_minus_factor_29_part
-            factor_123_root_1_part = factor_9_root_1_part * goal_r12
-            factor_124_root_1_part = factor_11_root_1_part * goal_r22
-            r12_from_q1_root_1_part = factor_123_root_1_part + factor_124_root_1_part
-            sum_q3_part = factor_27_part + factor_29_part
-            one_by_sum_q3_part = 1.0 / sum_q3_part
-            factor_31_part = -factor_27_part_minus_factor_29_part * one_by_sum_q3_part
-            factor_42_part = a3 * factor_31_part
-            factor_44_part = factor_42_part * one_by_length_25
-            factor_31_root_1_part = 2.0 * factor_18_root_1_part * one_by_sum_q3_part
-            factor_42_root_1_part = a3 * factor_31_root_1_part
-            factor_44_root_1_part = factor_42_root_1_part * one_by_length_25
-            factor_37_part = 2.0 * one_by_sum_q3_part
-            factor_46_root_3_part = d4 * factor_37_part
-            factor_47_root_3_part = factor_46_root_3_part * one_by_length_25
-            factor_61_part = a3 * factor_44_part
-            factor_50_part = -d4 * factor_31_part
-            factor_52_part = factor_50_part * one_by_length_25
-            factor_64_part = -d4 * factor_52_part
-            arm_across_q2_part = a2 + factor_61_part + factor_64_part
-            factor_69_part = arm_across_q2_part * wrist_z_from_q1_tried
-            factor_61_root_1_part = a3 * factor_44_root_1_part
-            factor_50_root_1_part = -d4 * factor_31_root_1_part
-            factor_52_root_1_part = factor_50_root_1_part * one_by_length_25
-            factor_64_root_1_part = -d4 * factor_52_root_1_part
-            arm_across_q2_root_1_part = factor_61_root_1_part + factor_64_root_1_part
-            factor_69_root_1_part = arm_across_q2_root_1_part * wrist_z_from_q1_tried
-            one_by_factor_106_part = 1.0 / factor_106_part
-            factor_109_root_1_part = (
-                factor_69_root_1_part * length_q2_part - factor_18_root_1_part * factor_69_part
-            ) * one_by_factor_106_part
-            factor_48_root_3_part = a3 * factor_37_part
-            factor_49_root_3_part = factor_48_root_3_part * one_by_length_25
-            factor_54_root_3_part = a3 * factor_49_root_3_part
-            factor_57_root_3_part = d4 * factor_47_root_3_part
-            arm_along_q2_root_3_part = factor_54_root_3_part + factor_57_root_3_part
-            factor_71_root_3_part = -a1 * arm_along_q2_root_3_part
-            factor_71_root_1_root_3_part = arm_along_q2_root_3_part * wrist_x_from_q1_root_1_part
-            product_in_factor_108_root_3_part = one_by_factor_106_part * product_in_factor_105_part
-            factor_108_root_3_part = factor_71_root_1_root_3_part * product_in_factor_108_root_3_part
-            product_in_factor_109_root_3_part = length_q2_part * one_by_factor_106_part
-            factor_109_root_3_part = factor_108_root_3_part + factor_71_root_3_part * product_in_factor_109_root_3_part
-            factor_109_root_1_root_3_part = (
-                factor_71_root_1_root_3_part * length_q2_part - factor_18_root_1_part * factor_71_root_3_part
-            ) * one_by_factor_106_part
-            factor_156_root_1_root_3_part = (
-                factor_109_root_1_part * factor_47_root_3_part
-                + factor_109_root_1_root_3_part * factor_44_part
-                + factor_109_root_3_part * factor_44_root_1_part
+            factor_8_part = -wrist_x_tried * wrist_x_tried - wrist_y_tried * wrist_y_tried
+            factor_8_part_or_1 = factor_8_part if abs(factor_8_part) > 0.0 else 1.0
+            factor_10_root_1_part = -wrist_x_tried / factor_8_part_or_1
+            factor_14_root_1_part = factor_10_root_1_part * wrist_x_tried
+            factor_12_root_1_part = -wrist_y_tried / factor_8_part_or_1
+            factor_15_root_1_part = factor_12_root_1_part * wrist_y_tried
+            wrist_x_from_q1_root_1_part = factor_14_root_1_part + factor_15_root_1_part
+            product_in_factor_18_part = factor_8_part * wrist_x_from_q1_root_1_part
+            factor_18_part = -product_in_factor_18_part * wrist_x_from_q1_root_1_part
+            factor_19_part = a1_squared + factor_18_part
+            factor_27_part = -factor_19_part - wrist_z_from_q1_tried * wrist_z_from_q1_tried
+            factor_28_part = a2_plus_length_26_squared + factor_27_part
+            factor_30_part = -a2_minus_length_26_squared - factor_27_part
+            factor_19_root_1_part = -twice_a1 * wrist_x_from_q1_root_1_part
+            product_in_factor_35_part = factor_19_root_1_part * factor_8_part
+            factor_35_part = factor_19_root_1_part * product_in_factor_35_part
+            factor_36_part = factor_35_part + factor_28_part * factor_30_part
+            factor_28_part_minus_factor_30_part = factor_28_part - factor_30_part
+            factor_36_root_1_part = factor_19_root_1_part * factor_28_part_minus_factor_30_part
+            factor_127_root_1_part = factor_10_root_1_part * goal_r12
+            factor_128_root_1_part = factor_12_root_1_part * goal_r22
+            r12_from_q1_root_1_part = factor_127_root_1_part + factor_128_root_1_part
+            sum_q3_part = factor_28_part + factor_30_part
+            sum_q3_part_or_1 = sum_q3_part if abs(sum_q3_part) > 0.0 else 1.0
+            one_by_sum_q3_part = 1.0 / sum_q3_part_or_1
+            factor_33_part = -factor_28_part_minus_factor_30_part * one_by_sum_q3_part
+            factor_44_part = a3 * factor_33_part
+            factor_47_part = factor_44_part * one_by_length_26_or_1
+            factor_33_root_1_part = 2.0 * factor_19_root_1_part * one_by_sum_q3_part
+            factor_44_root_1_part = a3 * factor_33_root_1_part
+            factor_47_root_1_part = factor_44_root_1_part * one_by_length_26_or_1
+            factor_39_part = 2.0 * one_by_sum_q3_part
+            factor_49_root_3_part = d4 * factor_39_part
+            factor_50_root_3_part = factor_49_root_3_part * one_by_length_26_or_1
+            factor_64_part = a3 * factor_47_part
+            factor_53_part = -d4 * factor_33_part
+            factor_55_part = factor_53_part * one_by_length_26_or_1
+            factor_67_part = -d4 * factor_55_part
+            arm_across_q2_part = a2 + factor_64_part + factor_67_part
+            factor_72_part = arm_across_q2_part * wrist_z_from_q1_tried
+            factor_64_root_1_part = a3 * factor_47_root_1_part
+            factor_53_root_1_part = -d4 * factor_33_root_1_part
+            factor_55_root_1_part = factor_53_root_1_part * one_by_length_26_or_1
+            factor_67_root_1_part = -d4 * factor_55_root_1_part
+            arm_across_q2_root_1_part = factor_64_root_1_part + factor_67_root_1_part
+            factor_72_root_1_part = arm_across_q2_root_1_part * wrist_z_from_q1_tried
+            factor_109_part = factor_35_part + factor_27_part * factor_27_part
+            factor_109_part_or_1 = factor_109_part if abs(factor_109_part) > 0.0 else 1.0
+            one_by_factor_109_part_or_1 = 1.0 / factor_109_part_or_1
+            factor_113_root_1_part = (
+                -factor_19_root_1_part * factor_72_part - factor_27_part * factor_72_root_1_part
+            ) * one_by_factor_109_part_or_1
+            factor_51_root_3_part = a3 * factor_39_part
+            factor_52_root_3_part = factor_51_root_3_part * one_by_length_26_or_1
+            factor_57_root_3_part = a3 * factor_52_root_3_part
+            factor_60_root_3_part = d4 * factor_50_root_3_part
+            arm_along_q2_root_3_part = factor_57_root_3_part + factor_60_root_3_part
+            factor_74_root_3_part = -a1 * arm_along_q2_root_3_part
+            factor_74_root_1_root_3_part = arm_along_q2_root_3_part * wrist_x_from_q1_root_1_part
+            product_in_factor_112_root_3_part = one_by_factor_109_part_or_1 * product_in_factor_35_part
+            factor_112_root_3_part = factor_74_root_1_root_3_part * product_in_factor_112_root_3_part
+            product_in_factor_113_root_3_part = factor_27_part * one_by_factor_109_part_or_1
+            factor_113_root_3_part = factor_112_root_3_part - factor_74_root_3_part * product_in_factor_113_root_3_part
+            factor_113_root_1_root_3_part = (
+                -factor_19_root_1_part * factor_74_root_3_part - factor_27_part * factor_74_root_1_root_3_part
+            ) * one_by_factor_109_part_or_1
+            factor_160_root_1_root_3_part = (
+                factor_113_root_1_part * factor_50_root_3_part
+                + factor_113_root_1_root_3_part * factor_47_part
+                + factor_113_root_3_part * factor_47_root_1_part
             )
-            factor_73_part = -arm_across_q2_root_1_part * product_in_factor_17_part
-            factor_74_part = factor_73_part - a1 * arm_across_q2_part
-            factor_74_root_1_part = arm_across_q2_part * wrist_x_from_q1_root_1_part - a1 * arm_across_q2_root_1_part
-            factor_116_root_1_part = (
-                factor_74_root_1_part * length_q2_part - factor_18_root_1_part * factor_74_part
-            ) * one_by_factor_106_part
-            factor_76_root_3_part = -arm_along_q2_root_3_part * wrist_z_from_q1_tried
-            factor_116_root_3_part = factor_76_root_3_part * product_in_factor_109_root_3_part
-            factor_116_root_1_root_3_part = -factor_18_root_1_part * factor_76_root_3_part * one_by_factor_106_part
-            factor_166_root_1_root_3_part = (
-                -factor_116_root_1_part * factor_49_root_3_part
-                - factor_116_root_1_root_3_part * factor_52_part
-                - factor_116_root_3_part * factor_52_root_1_part
+            factor_76_part = -arm_across_q2_root_1_part * product_in_factor_18_part
+            factor_77_part = factor_76_part - a1 * arm_across_q2_part
+            factor_77_root_1_part = arm_across_q2_part * wrist_x_from_q1_root_1_part - a1 * arm_across_q2_root_1_part
+            factor_120_root_1_part = (
+                -factor_19_root_1_part * factor_77_part - factor_27_part * factor_77_root_1_part
+            ) * one_by_factor_109_part_or_1
+            factor_79_root_3_part = -arm_along_q2_root_3_part * wrist_z_from_q1_tried
+            factor_120_root_3_part = -factor_79_root_3_part * product_in_factor_113_root_3_part
+            factor_120_root_1_root_3_part = -factor_19_root_1_part * factor_79_root_3_part * one_by_factor_109_part_or_1
+            factor_170_root_1_root_3_part = (
+                -factor_120_root_1_part * factor_52_root_3_part
+                - factor_120_root_1_root_3_part * factor_55_part
+                - factor_120_root_3_part * factor_55_root_1_part
             )
-            cos_q23_root_1_root_3_part = factor_156_root_1_root_3_part + factor_166_root_1_root_3_part
-            product_in_factor_187_root_3_part = factor_8_part * r12_from_q1_root_1_part
-            factor_187_root_3_part = -product_in_factor_187_root_3_part * cos_q23_root_1_root_3_part
-            factor_107_part = factor_69_root_1_part * product_in_factor_108_root_3_part
-            factor_109_part = factor_107_part + factor_69_part * product_in_factor_109_root_3_part
-            product_in_factor_131_root_3_part = factor_52_root_1_part * factor_8_part
-            factor_131_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_131_root_3_part
-            factor_132_root_3_part = (
-                factor_131_root_3_part
-                + factor_109_part * factor_49_root_3_part
-                + factor_109_root_3_part * factor_52_part
+            cos_q23_root_1_root_3_part = factor_160_root_1_root_3_part + factor_170_root_1_root_3_part
+            product_in_factor_191_root_3_part = factor_8_part * r12_from_q1_root_1_part
+            factor_191_root_3_part = -product_in_factor_191_root_3_part * cos_q23_root_1_root_3_part
+            factor_111_part = factor_72_root_1_part * product_in_factor_112_root_3_part
+            factor_113_part = factor_111_part - factor_72_part * product_in_factor_113_root_3_part
+            product_in_factor_135_root_3_part = factor_55_root_1_part * factor_8_part
+            factor_135_root_3_part = -factor_113_root_1_root_3_part * product_in_factor_135_root_3_part
+            factor_136_root_3_part = (
+                factor_135_root_3_part
+                + factor_113_part * factor_52_root_3_part
+                + factor_113_root_3_part * factor_55_part
             )
-            factor_115_part = factor_74_root_1_part * product_in_factor_108_root_3_part
-            factor_116_part = factor_115_part + factor_74_part * product_in_factor_109_root_3_part
-            product_in_factor_137_root_3_part = factor_44_root_1_part * factor_8_part
-            factor_137_root_3_part = -factor_116_root_1_root_3_part * product_in_factor_137_root_3_part
-            factor_142_root_3_part = (
-                factor_137_root_3_part
-                + factor_116_part * factor_47_root_3_part
-                + factor_116_root_3_part * factor_44_part
+            factor_119_part = factor_77_root_1_part * product_in_factor_112_root_3_part
+            factor_120_part = factor_119_part - factor_77_part * product_in_factor_113_root_3_part
+            product_in_factor_141_root_3_part = factor_47_root_1_part * factor_8_part
+            factor_141_root_3_part = -factor_120_root_1_root_3_part * product_in_factor_141_root_3_part
+            factor_146_root_3_part = (
+                factor_141_root_3_part
+                + factor_120_part * factor_50_root_3_part
+                + factor_120_root_3_part * factor_47_part
             )
-            sin_q23_root_3_part = factor_132_root_3_part + factor_142_root_3_part
-            factor_190_root_3_part = -goal_r32 * sin_q23_root_3_part
-            r12_from_q123_root_3_part = factor_187_root_3_part + factor_190_root_3_part
-            factor_198_root_3_part = r12_from_q123_root_3_part * cos_q6_tried
-            factor_120_root_1_part = factor_9_root_1_part * goal_r11
-            factor_121_root_1_part = factor_11_root_1_part * goal_r21
-            r11_from_q1_root_1_part = factor_120_root_1_part + factor_121_root_1_part
-            product_in_factor_175_root_3_part = factor_8_part * r11_from_q1_root_1_part
-            factor_175_root_3_part = -product_in_factor_175_root_3_part * cos_q23_root_1_root_3_part
-            factor_178_root_3_part = -goal_r31 * sin_q23_root_3_part
-            r11_from_q123_root_3_part = factor_175_root_3_part + factor_178_root_3_part
-            factor_202_root_3_part = r11_from_q123_root_3_part * sin_q6_tried
-            r12_from_q123_before_q6_root_3_part = factor_198_root_3_part + factor_202_root_3_part
-            factor_153_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_137_root_3_part
-            factor_156_root_3_part = (
-                factor_153_root_3_part
-                + factor_109_part * factor_47_root_3_part
-                + factor_109_root_3_part * factor_44_part
+            sin_q23_root_3_part = factor_136_root_3_part + factor_146_root_3_part
+            factor_194_root_3_part = -goal_r32 * sin_q23_root_3_part
+            r12_from_q123_root_3_part = factor_191_root_3_part + factor_194_root_3_part
+            factor_202_root_3_part = r12_from_q123_root_3_part * cos_q6_tried
+            factor_124_root_1_part = factor_10_root_1_part * goal_r11
+            factor_125_root_1_part = factor_12_root_1_part * goal_r21
+            r11_from_q1_root_1_part = factor_124_root_1_part + factor_125_root_1_part
+            product_in_factor_179_root_3_part = factor_8_part * r11_from_q1_root_1_part
+            factor_179_root_3_part = -product_in_factor_179_root_3_part * cos_q23_root_1_root_3_part
+            factor_182_root_3_part = -goal_r31 * sin_q23_root_3_part
+            r11_from_q123_root_3_part = factor_179_root_3_part + factor_182_root_3_part
+            factor_206_root_3_part = r11_from_q123_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_3_part = factor_202_root_3_part + factor_206_root_3_part
+            factor_157_root_3_part = -factor_113_root_1_root_3_part * product_in_factor_141_root_3_part
+            factor_160_root_3_part = (
+                factor_157_root_3_part
+                + factor_113_part * factor_50_root_3_part
+                + factor_113_root_3_part * factor_47_part
             )
-            factor_165_root_3_part = factor_116_root_1_root_3_part * product_in_factor_131_root_3_part
-            factor_166_root_3_part = (
-                factor_165_root_3_part
-                - factor_116_part * factor_49_root_3_part
-                - factor_116_root_3_part * factor_52_part
+            factor_169_root_3_part = factor_120_root_1_root_3_part * product_in_factor_135_root_3_part
+            factor_170_root_3_part = (
+                factor_169_root_3_part
+                - factor_120_part * factor_52_root_3_part
+                - factor_120_root_3_part * factor_55_part
             )
-            cos_q23_root_3_part = factor_156_root_3_part + factor_166_root_3_part
-            factor_188_root_1_root_3_part = r12_from_q1_root_1_part * cos_q23_root_3_part
-            factor_132_root_1_root_3_part = (
-                factor_109_root_1_part * factor_49_root_3_part
-                + factor_109_root_1_root_3_part * factor_52_part
-                + factor_109_root_3_part * factor_52_root_1_part
+            cos_q23_root_3_part = factor_160_root_3_part + factor_170_root_3_part
+            factor_192_root_1_root_3_part = r12_from_q1_root_1_part * cos_q23_root_3_part
+            factor_136_root_1_root_3_part = (
+                factor_113_root_1_part * factor_52_root_3_part
+                + factor_113_root_1_root_3_part * factor_55_part
+                + factor_113_root_3_part * factor_55_root_1_part
             )
-            factor_142_root_1_root_3_part = (
-                factor_116_root_1_part * factor_47_root_3_part
-                + factor_116_root_1_root_3_part * factor_44_part
-                + factor_116_root_3_part * factor_44_root_1_part
+            factor_146_root_1_root_3_part = (
+                factor_120_root_1_part * factor_50_root_3_part
+                + factor_120_root_1_root_3_part * factor_47_part
+                + factor_120_root_3_part * factor_47_root_1_part
             )
-            sin_q23_root_1_root_3_part = factor_132_root_1_root_3_part + factor_142_root_1_root_3_part
-            factor_190_root_1_root_3_part = -goal_r32 * sin_q23_root_1_root_3_part
-            r12_from_q123_root_1_root_3_part = factor_188_root_1_root_3_part + factor_190_root_1_root_3_part
-            factor_198_root_1_root_3_part = r12_from_q123_root_1_root_3_part * cos_q6_tried
-            factor_176_root_1_root_3_part = r11_from_q1_root_1_part * cos_q23_root_3_part
-            factor_178_root_1_root_3_part = -goal_r31 * sin_q23_root_1_root_3_part
-            r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
-            factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
-            r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
-            factor_301_part = (
+            sin_q23_root_1_root_3_part = factor_136_root_1_root_3_part + factor_146_root_1_root_3_part
+            factor_194_root_1_root_3_part = -goal_r32 * sin_q23_root_1_root_3_part
+            r12_from_q123_root_1_root_3_part = factor_192_root_1_root_3_part + factor_194_root_1_root_3_part
+            factor_202_root_1_root_3_part = r12_from_q123_root_1_root_3_part * cos_q6_tried
+            factor_180_root_1_root_3_part = r11_from_q1_root_1_part * cos_q23_root_3_part
+            factor_182_root_1_root_3_part = -goal_r31 * sin_q23_root_1_root_3_part
+            r11_from_q123_root_1_root_3_part = factor_180_root_1_root_3_part + factor_182_root_1_root_3_part
+            factor_206_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_root_3_part = factor_202_root_1_root_3_part + factor_206_root_1_root_3_part
+            factor_214_part = (
                 -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
             )
-            factor_302_part = (
-                factor_301_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            factor_215_part = (
+                factor_214_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_302_root_1_part = (
+            factor_215_root_1_part = (
                 2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_305_root_1_part = factor_302_part * factor_34_root_1_part + factor_302_root_1_part * factor_34_part
-            factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
-            product_in_factor_151_part = factor_34_part * factor_47_root_3_part
-            factor_151_part = factor_109_root_3_part * product_in_factor_151_part
-            product_in_factor_154_part = factor_34_root_1_part * factor_8_part
-            product_in_factor_154_part_2 = factor_47_root_3_part * product_in_factor_154_part
-            factor_154_part = -factor_109_root_1_root_3_part * product_in_factor_154_part_2
-            factor_156_part = factor_150_part + factor_151_part + factor_154_part + factor_109_part * factor_44_part
-            factor_160_part = factor_116_root_1_part * product_in_factor_131_root_3_part
-            product_in_factor_161_part = factor_34_part * factor_49_root_3_part
-            factor_161_part = -factor_116_root_3_part * product_in_factor_161_part
-            product_in_factor_163_part = factor_49_root_3_part * product_in_factor_154_part
-            factor_163_part = factor_116_root_1_root_3_part * product_in_factor_163_part
-            factor_166_part = factor_160_part + factor_161_part + factor_163_part - factor_116_part * factor_52_part
-            cos_q23_part = factor_156_part + factor_166_part
-            factor_188_root_1_part = r12_from_q1_root_1_part * cos_q23_part
-            product_in_factor_127_root_1_part = factor_109_root_3_part * factor_34_root_1_part
-            factor_127_root_1_part = factor_49_root_3_part * product_in_factor_127_root_1_part
-            factor_130_root_1_part = factor_109_root_1_root_3_part * product_in_factor_161_part
-            factor_132_root_1_part = (
-                factor_127_root_1_part
-                + factor_130_root_1_part
-                + factor_109_part * factor_52_root_1_part
-                + factor_109_root_1_part * factor_52_part
+            factor_218_root_1_part = factor_215_part * factor_36_root_1_part + factor_215_root_1_part * factor_36_part
+            factor_154_part = -factor_113_root_1_part * product_in_factor_141_root_3_part
+            product_in_factor_155_part = factor_36_part * factor_50_root_3_part
+            factor_155_part = factor_113_root_3_part * product_in_factor_155_part
+            product_in_factor_158_part = factor_36_root_1_part * factor_8_part
+            product_in_factor_158_part_2 = factor_50_root_3_part * product_in_factor_158_part
+            factor_158_part = -factor_113_root_1_root_3_part * product_in_factor_158_part_2
+            factor_160_part = factor_154_part + factor_155_part + factor_158_part + factor_113_part * factor_47_part
+            factor_164_part = factor_120_root_1_part * product_in_factor_135_root_3_part
+            product_in_factor_165_part = factor_36_part * factor_52_root_3_part
+            factor_165_part = -factor_120_root_3_part * product_in_factor_165_part
+            product_in_factor_167_part = factor_52_root_3_part * product_in_factor_158_part
+            factor_167_part = factor_120_root_1_root_3_part * product_in_factor_167_part
+            factor_170_part = factor_164_part + factor_165_part + factor_167_part - factor_120_part * factor_55_part
+            cos_q23_part = factor_160_part + factor_170_part
+            factor_192_root_1_part = r12_from_q1_root_1_part * cos_q23_part
+            product_in_factor_131_root_1_part = factor_113_root_3_part * factor_36_root_1_part
+            factor_131_root_1_part = factor_52_root_3_part * product_in_factor_131_root_1_part
+            factor_134_root_1_part = factor_113_root_1_root_3_part * product_in_factor_165_part
+            factor_136_root_1_part = (
+                factor_131_root_1_part
+                + factor_134_root_1_part
+                + factor_113_part * factor_55_root_1_part
+                + factor_113_root_1_part * factor_55_part
             )
-            product_in_factor_138_root_1_part = factor_116_root_3_part * factor_34_root_1_part
-            factor_138_root_1_part = factor_47_root_3_part * product_in_factor_138_root_1_part
-            factor_141_root_1_part = factor_116_root_1_root_3_part * product_in_factor_151_part
-            factor_142_root_1_part = (
-                factor_138_root_1_part
-                + factor_141_root_1_part
-                + factor_116_part * factor_44_root_1_part
-                + factor_116_root_1_part * factor_44_part
+            product_in_factor_142_root_1_part = factor_120_root_3_part * factor_36_root_1_part
+            factor_142_root_1_part = factor_50_root_3_part * product_in_factor_142_root_1_part
+            factor_145_root_1_part = factor_120_root_1_root_3_part * product_in_factor_155_part
+            factor_146_root_1_part = (
+                factor_142_root_1_part
+                + factor_145_root_1_part
+                + factor_120_part * factor_47_root_1_part
+                + factor_120_root_1_part * factor_47_part
             )
-            sin_q23_root_1_part = factor_132_root_1_part + factor_142_root_1_part
-            factor_190_root_1_part = -goal_r32 * sin_q23_root_1_part
-            r12_from_q123_root_1_part = factor_188_root_1_part + factor_190_root_1_part
-            factor_198_root_1_part = r12_from_q123_root_1_part * cos_q6_tried
-            factor_176_root_1_part = r11_from_q1_root_1_part * cos_q23_part
-            factor_178_root_1_part = -goal_r31 * sin_q23_root_1_part
-            r11_from_q123_root_1_part = factor_176_root_1_part + factor_178_root_1_part
-            factor_202_root_1_part = r11_from_q123_root_1_part * sin_q6_tried
-            r12_from_q123_before_q6_root_1_part = factor_198_root_1_part + factor_202_root_1_part
-            factor_151_root_1_part = factor_47_root_3_part * product_in_factor_127_root_1_part
-            factor_155_root_1_part = factor_109_root_1_root_3_part * product_in_factor_151_part
-            factor_156_root_1_part = (
-                factor_151_root_1_part
-                + factor_155_root_1_part
-                + factor_109_part * factor_44_root_1_part
-                + factor_109_root_1_part * factor_44_part
+            sin_q23_root_1_part = factor_136_root_1_part + factor_146_root_1_part
+            factor_194_root_1_part = -goal_r32 * sin_q23_root_1_part
+            r12_from_q123_root_1_part = factor_192_root_1_part + factor_194_root_1_part
+            factor_202_root_1_part = r12_from_q123_root_1_part * cos_q6_tried
+            factor_180_root_1_part = r11_from_q1_root_1_part * cos_q23_part
+            factor_182_root_1_part = -goal_r31 * sin_q23_root_1_part
+            r11_from_q123_root_1_part = factor_180_root_1_part + factor_182_root_1_part
+            factor_206_root_1_part = r11_from_q123_root_1_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_part = factor_202_root_1_part + factor_206_root_1_part
+            factor_155_root_1_part = factor_50_root_3_part * product_in_factor_131_root_1_part
+            factor_159_root_1_part = factor_113_root_1_root_3_part * product_in_factor_155_part
+            factor_160_root_1_part = (
+                factor_155_root_1_part
+                + factor_159_root_1_part
+                + factor_113_part * factor_47_root_1_part
+                + factor_113_root_1_part * factor_47_part
             )
-            factor_161_root_1_part = -factor_49_root_3_part * product_in_factor_138_root_1_part
-            factor_164_root_1_part = -factor_116_root_1_root_3_part * product_in_factor_161_part
-            factor_166_root_1_part = (
-                factor_161_root_1_part
-                + factor_164_root_1_part
-                - factor_116_part * factor_52_root_1_part
-                - factor_116_root_1_part * factor_52_part
+            factor_165_root_1_part = -factor_52_root_3_part * product_in_factor_142_root_1_part
+            factor_168_root_1_part = -factor_120_root_1_root_3_part * product_in_factor_165_part
+            factor_170_root_1_part = (
+                factor_165_root_1_part
+                + factor_168_root_1_part
+                - factor_120_part * factor_55_root_1_part
+                - factor_120_root_1_part * factor_55_part
             )
-            cos_q23_root_1_part = factor_156_root_1_part + factor_166_root_1_part
-            factor_186_part = -product_in_factor_187_root_3_part * cos_q23_root_1_part
-            factor_126_part = -factor_109_root_1_part * product_in_factor_131_root_3_part
-            factor_127_part = factor_109_root_3_part * product_in_factor_161_part
-            factor_129_part = -factor_109_root_1_root_3_part * product_in_factor_163_part
-            factor_132_part = factor_126_part + factor_127_part + factor_129_part + factor_109_part * factor_52_part
-            factor_136_part = -factor_116_root_1_part * product_in_factor_137_root_3_part
-            factor_138_part = factor_116_root_3_part * product_in_factor_151_part
-            factor_140_part = -factor_116_root_1_root_3_part * product_in_factor_154_part_2
-            factor_142_part = factor_136_part + factor_138_part + factor_140_part + factor_116_part * factor_44_part
-            sin_q23_part = factor_132_part + factor_142_part
-            factor_190_part = -goal_r32 * sin_q23_part
-            r12_from_q123_part = factor_186_part + factor_190_part
-            factor_198_part = r12_from_q123_part * cos_q6_tried
-            factor_174_part = -product_in_factor_175_root_3_part * cos_q23_root_1_part
-            factor_178_part = -goal_r31 * sin_q23_part
-            r11_from_q123_part = factor_174_part + factor_178_part
-            factor_202_part = r11_from_q123_part * sin_q6_tried
-            r12_from_q123_before_q6_part = factor_198_part + factor_202_part
-            factor_308_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
-            product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part
-            factor_312_part = product_310_root_1_part * product_310_root_1_part
-            factor_313_part = -factor_312_part * factor_8_part
-            factor_304_part = -factor_302_root_1_part * product_in_factor_154_part
-            factor_305_part = factor_304_part + factor_302_part * factor_34_part
-            factor_307_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
-            factor_308_part = factor_307_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
-            product_310_part = factor_308_part - factor_305_part
-            factor_314_part = product_310_part * product_310_part
-            product_315_part = factor_314_part - factor_313_part
-            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_315_part
+            cos_q23_root_1_part = factor_160_root_1_part + factor_170_root_1_part
+            factor_190_part = -product_in_factor_191_root_3_part * cos_q23_root_1_part
+            factor_130_part = -factor_113_root_1_part * product_in_factor_135_root_3_part
+            factor_131_part = factor_113_root_3_part * product_in_factor_165_part
+            factor_133_part = -factor_113_root_1_root_3_part * product_in_factor_167_part
+            factor_136_part = factor_130_part + factor_131_part + factor_133_part + factor_113_part * factor_55_part
+            factor_140_part = -factor_120_root_1_part * product_in_factor_141_root_3_part
+            factor_142_part = factor_120_root_3_part * product_in_factor_155_part
+            factor_144_part = -factor_120_root_1_root_3_part * product_in_factor_158_part_2
+            factor_146_part = factor_140_part + factor_142_part + factor_144_part + factor_120_part * factor_47_part
+            sin_q23_part = factor_136_part + factor_146_part
+            factor_194_part = -goal_r32 * sin_q23_part
+            r12_from_q123_part = factor_190_part + factor_194_part
+            factor_202_part = r12_from_q123_part * cos_q6_tried
+            factor_178_part = -product_in_factor_179_root_3_part * cos_q23_root_1_part
+            factor_182_part = -goal_r31 * sin_q23_part
+            r11_from_q123_part = factor_178_part + factor_182_part
+            factor_206_part = r11_from_q123_part * sin_q6_tried
+            r12_from_q123_before_q6_part = factor_202_part + factor_206_part
+            factor_221_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_223_root_1_part = factor_221_root_1_part - factor_218_root_1_part
+            factor_225_part = product_223_root_1_part * product_223_root_1_part
+            factor_226_part = -factor_225_part * factor_8_part
+            factor_217_part = -factor_215_root_1_part * product_in_factor_158_part
+            factor_218_part = factor_217_part + factor_215_part * factor_36_part
+            factor_220_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_221_part = factor_220_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_223_part = factor_221_part - factor_218_part
+            factor_227_part = product_223_part * product_223_part
+            cleared_by = factor_109_part * factor_8_part * factor_8_part
+            product_228_part = factor_227_part - factor_226_part
+            taken = 0.09523809523809523 * cleared_by * product_228_part
             level = 0.5 * taken
             cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
             sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
@@ -611,6 +642,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if (not looked_for) or (sample >= 21):
                 break
             sample = 1 + sample
+            size_of_terms = size_of_terms + abs(cleared_by) * (1e-12 + abs(factor_226_part) + abs(factor_227_part))
             wave_cos_0 = level + wave_cos_0
             wave_cos_1 = wave_cos_1 + taken * cos_q6_tried
             wave_cos_2 = wave_cos_2 + taken * cos_2
@@ -640,7 +672,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_in_rounding_0_6 = abs(wave_cos_4) + abs(wave_sin_4)
         sum_in_rounding_0_7 = abs(wave_cos_8) + abs(wave_sin_8)
         sum_in_rounding_0_8 = abs(wave_cos_5) + abs(wave_sin_5)
-        rounding_0 = 1e-14 * (
+        rounding_0 = 1e-16 * size_of_terms + 1e-14 * (
             sum_in_rounding_0
             + sum_in_rounding_0_2
             + sum_in_rounding_0_3
@@ -914,8 +946,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wanted_shoulder,
         ) = given
         k = self._constants
-        a1, a2, a2_minus_length_25, a2_plus_length_25, a3 = k.a1, k.a2, k.a2_minus_length_25, k.a2_plus_length_25, k.a3
-        a3_by_length_25, d1, d4, d4_by_length_25, d6 = k.a3_by_length_25, k.d1, k.d4, k.d4_by_length_25, k.d6
+        a1, a2, a2_minus_length_26, a2_plus_length_26, a3 = k.a1, k.a2, k.a2_minus_length_26, k.a2_plus_length_26, k.a3
+        a3_by_length_26, d1, d4, d4_by_length_26, d6 = k.a3_by_length_26, k.d1, k.d4, k.d4_by_length_26, k.d6
         j6_offset_x, machine_scale_times_free_angle = k.j6_offset_x, k.machine_scale_times_free_angle
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
@@ -961,14 +993,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
         r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
-        a2_plus_length_25_minus_reach_tried = a2_plus_length_25 - reach_tried
-        a2_plus_length_25_plus_reach_tried = a2_plus_length_25 + reach_tried
+        a2_plus_length_26_minus_reach_tried = a2_plus_length_26 - reach_tried
+        a2_plus_length_26_plus_reach_tried = a2_plus_length_26 + reach_tried
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = a2_plus_length_25_minus_reach_tried * a2_plus_length_25_plus_reach_tried
-        a2_minus_length_25_minus_reach_tried = a2_minus_length_25 - reach_tried
-        a2_minus_length_25_plus_reach_tried = a2_minus_length_25 + reach_tried
+        one_less_cos_q3_tried = a2_plus_length_26_minus_reach_tried * a2_plus_length_26_plus_reach_tried
+        a2_minus_length_26_minus_reach_tried = a2_minus_length_26 - reach_tried
+        a2_minus_length_26_plus_reach_tried = a2_minus_length_26 + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -a2_minus_length_25_minus_reach_tried * a2_minus_length_25_plus_reach_tried
+        one_plus_cos_q3_tried = -a2_minus_length_26_minus_reach_tried * a2_minus_length_26_plus_reach_tried
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
@@ -985,10 +1017,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else 0.0
         )
         slope_one_less_cos_q3_tried = (
-            a2_plus_length_25_minus_reach_tried - a2_plus_length_25_plus_reach_tried
+            a2_plus_length_26_minus_reach_tried - a2_plus_length_26_plus_reach_tried
         ) * slope_reach_tried
         slope_one_plus_cos_q3_tried = (
-            a2_minus_length_25_plus_reach_tried - a2_minus_length_25_minus_reach_tried
+            a2_minus_length_26_plus_reach_tried - a2_minus_length_26_minus_reach_tried
         ) * slope_reach_tried
         if sum_q3_tried > 0.0:
             divisor_of_cos_q3_tried = sum_q3_tried
@@ -1004,8 +1036,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
         sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = a3_by_length_25 * cos_swing_q3_tried + d4_by_length_25 * sin_swing_q3_tried
-        sin_q3_tried = a3_by_length_25 * sin_swing_q3_tried - d4_by_length_25 * cos_swing_q3_tried
+        cos_q3_tried = a3_by_length_26 * cos_swing_q3_tried + d4_by_length_26 * sin_swing_q3_tried
+        sin_q3_tried = a3_by_length_26 * sin_swing_q3_tried - d4_by_length_26 * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
@@ -1023,8 +1055,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
             - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
         ) * one_by_sum_q3_tried
-        slope_cos_q3_tried = a3_by_length_25 * slope_cos_swing_q3_tried + d4_by_length_25 * slope_sin_swing_q3_tried
-        slope_sin_q3_tried = a3_by_length_25 * slope_sin_swing_q3_tried - d4_by_length_25 * slope_cos_swing_q3_tried
+        slope_cos_q3_tried = a3_by_length_26 * slope_cos_swing_q3_tried + d4_by_length_26 * slope_sin_swing_q3_tried
+        slope_sin_q3_tried = a3_by_length_26 * slope_sin_swing_q3_tried - d4_by_length_26 * slope_cos_swing_q3_tried
         # at a singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
@@ -1139,8 +1171,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wanted_shoulder,
         ) = given
         k = self._constants
-        a1, a2, a2_minus_length_25, a2_plus_length_25, a3 = k.a1, k.a2, k.a2_minus_length_25, k.a2_plus_length_25, k.a3
-        a3_by_length_25, d1, d4, d4_by_length_25, d6 = k.a3_by_length_25, k.d1, k.d4, k.d4_by_length_25, k.d6
+        a1, a2, a2_minus_length_26, a2_plus_length_26, a3 = k.a1, k.a2, k.a2_minus_length_26, k.a2_plus_length_26, k.a3
+        a3_by_length_26, d1, d4, d4_by_length_26, d6 = k.a3_by_length_26, k.d1, k.d4, k.d4_by_length_26, k.d6
         j6_offset_x, machine_scale_times_free_angle = k.j6_offset_x, k.machine_scale_times_free_angle
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
@@ -1167,9 +1199,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = (a2_plus_length_25 + reach_tried) * (a2_plus_length_25 - reach_tried)
+        one_less_cos_q3_tried = (a2_plus_length_26 + reach_tried) * (a2_plus_length_26 - reach_tried)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (reach_tried - a2_minus_length_25) * (a2_minus_length_25 + reach_tried)
+        one_plus_cos_q3_tried = (reach_tried - a2_minus_length_26) * (a2_minus_length_26 + reach_tried)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
@@ -1184,8 +1216,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             / divisor_of_cos_q3_tried
         )
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = a3_by_length_25 * cos_swing_q3_tried + d4_by_length_25 * sin_swing_q3_tried
-        sin_q3_tried = a3_by_length_25 * sin_swing_q3_tried - d4_by_length_25 * cos_swing_q3_tried
+        cos_q3_tried = a3_by_length_26 * cos_swing_q3_tried + d4_by_length_26 * sin_swing_q3_tried
+        sin_q3_tried = a3_by_length_26 * sin_swing_q3_tried - d4_by_length_26 * cos_swing_q3_tried
         # at a singularity: the angle of the reference
         if reach_tried > machine_scale_times_free_angle:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
@@ -1241,6 +1273,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_x,
             goal_y,
             goal_z,
+            is_newton,
             q1,
             q2,
             q3,
@@ -1298,10 +1331,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         z = z_at_q6 + d6 * r33_at_q5
         error_3 = (goal_z - z) * one_by_machine_scale
         r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
         r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r32_at_q4 = cos_q23 * sin_q4
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
@@ -1333,6 +1366,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             - goal_r13 * r23_at_q5
         )
         rate_1_1 = -one_by_machine_scale * y
+        rate_2_1 = one_by_machine_scale * x
         z_minus_d1 = z - d1
         cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
         rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
@@ -1347,6 +1381,20 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
+        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         # 3 where the rotations agree, -1 where they are half a turn apart
         agreement = (
             goal_r11 * r11_at_q6
@@ -1380,16 +1428,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + rate_1_5 * rate_1_5
             + rate_1_6 * rate_1_6
         )
-        rate_2_1 = one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
         product_1_2 = (
             rate_1_1 * rate_2_1
             + rate_1_2 * rate_2_2
@@ -1398,11 +1436,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + rate_1_5 * rate_2_5
             + rate_1_6 * rate_2_6
         )
-        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         product_1_3 = (
             rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
         )
@@ -1460,46 +1493,96 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
         product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-        # damped least squares: the shortest step that cancels the error
+        # damped least squares, or the step that cancels the error
         _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
             (
-                (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
-                (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
-                (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
-                (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
-                (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
-                (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                (
+                    (rate_1_1 if is_newton else product_1_1),
+                    (rate_1_2 if is_newton else product_1_2),
+                    (rate_1_3 if is_newton else product_1_3),
+                    (rate_1_4 if is_newton else product_1_4),
+                    (rate_1_5 if is_newton else product_1_5),
+                    (rate_1_6 if is_newton else product_1_6),
+                ),
+                (
+                    (rate_2_1 if is_newton else product_1_2),
+                    (rate_2_2 if is_newton else product_2_2),
+                    (rate_2_3 if is_newton else product_2_3),
+                    (rate_2_4 if is_newton else product_2_4),
+                    (rate_2_5 if is_newton else product_2_5),
+                    (rate_2_6 if is_newton else product_2_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_3),
+                    (rate_3_2 if is_newton else product_2_3),
+                    (rate_3_3 if is_newton else product_3_3),
+                    (rate_3_4 if is_newton else product_3_4),
+                    (rate_3_5 if is_newton else product_3_5),
+                    (rate_3_6 if is_newton else product_3_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_4),
+                    (-sin_q1 if is_newton else product_2_4),
+                    (-sin_q1 if is_newton else product_3_4),
+                    (r11_at_q23 if is_newton else product_4_4),
+                    (r12_at_q4 if is_newton else product_4_5),
+                    (r13_at_q5 if is_newton else product_4_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_5),
+                    (cos_q1 if is_newton else product_2_5),
+                    (cos_q1 if is_newton else product_3_5),
+                    (r21_at_q23 if is_newton else product_4_5),
+                    (r22_at_q4 if is_newton else product_5_5),
+                    (r23_at_q5 if is_newton else product_5_6),
+                ),
+                (
+                    (1.0 if is_newton else product_1_6),
+                    (0.0 if is_newton else product_2_6),
+                    (0.0 if is_newton else product_3_6),
+                    (-sin_q23 if is_newton else product_4_6),
+                    (r32_at_q4 if is_newton else product_5_6),
+                    (r33_at_q5 if is_newton else product_6_6),
+                ),
             ),
             ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
         )
-        step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-        sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-        step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-        step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-        step_q4 = (
-            multiplier_1 * rate_1_4
-            + multiplier_2 * rate_2_4
-            + multiplier_3 * rate_3_4
-            + multiplier_4 * r11_at_q23
-            + multiplier_5 * r21_at_q23
-            - multiplier_6 * sin_q23
-        )
-        step_q5 = (
-            multiplier_1 * rate_1_5
-            + multiplier_2 * rate_2_5
-            + multiplier_3 * rate_3_5
-            + multiplier_4 * r12_at_q4
-            + multiplier_5 * r22_at_q4
-            + multiplier_6 * r32_at_q4
-        )
-        step_q6 = (
-            multiplier_1 * rate_1_6
-            + multiplier_2 * rate_2_6
-            + multiplier_3 * rate_3_6
-            + multiplier_4 * r13_at_q5
-            + multiplier_5 * r23_at_q5
-            + multiplier_6 * r33_at_q5
-        )
+        if is_newton:
+            step_q1 = multiplier_1
+            step_q2 = multiplier_2
+            step_q3 = multiplier_3
+            step_q4 = multiplier_4
+            step_q5 = multiplier_5
+            step_q6 = multiplier_6
+        else:
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_q4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
+            )
+            step_q5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_q6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
+            )
         step_length = sqrt(
             step_q1 * step_q1
             + step_q2 * step_q2
@@ -1665,7 +1748,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends_2 = 360.0 * DEGREE - 1e-7
+        sum_in_end_of_way = 360.0 * DEGREE - 1e-7
+        value_in_end_of_way = sum_in_end_of_way if onward else 180.0 * DEGREE
         # one step of the search
         (
             stage,
@@ -1678,6 +1762,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             aside,
             error_before,
             steps_left,
+            is_newton,
             was_mirrored,
             nearest,
             passes_left,
@@ -1724,6 +1809,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
             0,
+            False,
             False,
             9.0,
             1500,
@@ -1834,7 +1920,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             size = (length_2 if number_of_start > 12 else length_1) if stage == 1 else abs(remainder)
             is_less = size < least
             best_now = at if is_less else best
-            least_now = size if is_less else least
             way_now = real_of_direction * remainder / (rate if abs(rate) > 0.0 else 1e30) if is_less else 0.25 * way
             best_now_minus_way_now = best_now - way_now
             newton_place = (
@@ -1842,14 +1927,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if best_now_minus_way_now < place
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
+            settled_ = newton_place if is_less and (abs(at - newton_place) <= 1e-10) else best_now
+            least_now = size if is_less else least
             is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 5) or (abs(at - newton_place) <= 1e-10))
             is_known = (
-                (abs(best_now - settled_1) <= 1e-9)
-                or (abs(best_now - settled_2) <= 1e-9)
-                or (abs(best_now - settled_3) <= 1e-9)
-                or (abs(best_now - settled_4) <= 1e-9)
-                or (abs(best_now - settled_5) <= 1e-9)
-                or (abs(best_now - settled_6) <= 1e-9)
+                (abs(settled_ - settled_1) <= 1e-12)
+                or (abs(settled_ - settled_2) <= 1e-12)
+                or (abs(settled_ - settled_3) <= 1e-12)
+                or (abs(settled_ - settled_4) <= 1e-12)
+                or (abs(settled_ - settled_5) <= 1e-12)
+                or (abs(settled_ - settled_6) <= 1e-12)
             )
             is_near = is_settled and (
                 ((not is_known) and (width > 1e-6))
@@ -1873,7 +1960,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         reference_a1,
                         reference_a2,
                         side,
-                        start + best_now * real_of_direction,
+                        start + real_of_direction * settled_,
                         wanted_elbow,
                         wanted_shoulder,
                     )
@@ -1898,6 +1985,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_x,
                         goal_y,
                         goal_z,
+                        is_newton,
                         q1,
                         q2,
                         q3,
@@ -1926,37 +2014,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 (fits,) = found
             else:
                 (fits,) = (False,)
-            sum_in_way_ends = 2e-7 + nearest
-            way_ends = (
-                (stage == 0)
-                and (width <= 0.0)
-                and (
-                    place
-                    >= (
-                        (sum_in_way_ends if nearest < 360.0 * DEGREE else sum_in_way_ends_2)
-                        if onward
-                        else (sum_in_way_ends if nearest < 180.0 * DEGREE else 180.0 * DEGREE)
-                    )
-                )
+            end_of_way = (
+                nearest + 1e-7 * (-2.0 if onward else 2.0) if nearest < value_in_end_of_way else value_in_end_of_way
             )
-            start_minus_q6 = start - q6
-            way_ahead = (
-                1e-7
-                + 180.0 * DEGREE
-                + arctan2(
-                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
-                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
-                )
-                if onward
-                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
-            )
-            is_better = (
-                fits
-                and meets_pose
-                and (way_ahead < nearest)
-                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_way_ends_2)))
-            )
-            nearest_now = way_ahead if is_better else nearest
+            way_ends = (stage == 0) and (place >= end_of_way) and (width <= 0.0)
+            turns_back = way_ends and (not onward) and (direction > 0)
+            is_over = (passes_left <= 0) or (way_ends and (not turns_back))
             is_shortest = (stage == 1) and (trials >= 11)
             moved = (
                 abs(met_from_q1 - q1)
@@ -1979,6 +2042,24 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     else (number_of_start_plus_one if number_of_start < 15 else 0)
                 )
             )
+            start_minus_q6 = start - q6
+            way_ahead = (
+                1e-7
+                + 180.0 * DEGREE
+                + arctan2(
+                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                )
+                if onward
+                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
+            )
+            is_better = (
+                fits
+                and meets_pose
+                and (way_ahead < nearest)
+                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = way_ahead if is_better else nearest
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends and (not is_nearest) and (side > 0) and (is_nearest or (next_number == 0))
             part_is_done = start_ends and (not side_ends) and (is_nearest or (next_number == 0))
@@ -1998,12 +2079,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         else 0
                     )
                 )
-            )
-            turns_back = way_ends and (not onward) and (direction > 0)
-            is_over = (
-                (passes_left <= 0)
-                or (way_ends and (not turns_back))
-                or (onward and (next_stage == 0) and (nearest_now <= 2e-7 + place_plus_width))
             )
             direction_next = -1 if turns_back else direction
             place_next = (
@@ -2046,6 +2121,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             error_before_next = 9.0 if is_near or mirrors else error
             steps_left_next = 64 if is_near or mirrors else steps_left + (-8 if error > 0.999 * error_before else -1)
+            is_newton_next = (not is_near) and (not is_newton) and (not mirrors) and (error > 0.999 * error_before)
             was_mirrored_next = (not is_near) and (mirrors or was_mirrored)
             passes_left_next = passes_left - 1
             spread = 0.25 * width
@@ -2131,7 +2207,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             last_next = place_of_start if begins or is_shortest else at
             growth_before_next = 0.0 if begins or is_shortest else growth
             bend_next = 0.0 if begins or is_shortest else bend_now
-            settled_1_next = 9.0 if is_first else (best_now if is_near else settled_1)
+            settled_1_next = 9.0 if is_first else (settled_ if is_near else settled_1)
             settled_2_next = 9.0 if is_first else (settled_1 if is_near else settled_2)
             settled_3_next = 9.0 if is_first else (settled_2 if is_near else settled_3)
             settled_4_next = 9.0 if is_first else (settled_3 if is_near else settled_4)
@@ -2167,6 +2243,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             aside = aside_now
             error_before = error_before_next
             steps_left = steps_left_next
+            is_newton = is_newton_next
             was_mirrored = was_mirrored_next
             nearest = nearest_now
             passes_left = passes_left_next
@@ -2273,7 +2350,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             False,
             reference_a1,
             reference_a2,
-            reference_a6,
+            arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0),
             sigma_crossing,
             sigma_elbow,
             sigma_shoulder,
@@ -2345,7 +2422,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1, a2, a3, d1, d4, d6, j6_offset_x, offset_a1 = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x, k.offset_a1
         offset_a2, offset_a3, offset_a4, offset_a5 = k.offset_a2, k.offset_a3, k.offset_a4, k.offset_a5
-        offset_a6, one_by_length_25, one_by_machine_scale = k.offset_a6, k.one_by_length_25, k.one_by_machine_scale
+        offset_a6, one_by_length_26, one_by_machine_scale = k.offset_a6, k.one_by_length_26, k.one_by_machine_scale
         quotient_in_fits, searched = k.quotient_in_fits, k.searched
         if not reasonable(axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6):
             return Status.BAD_INPUT
@@ -2461,7 +2538,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (a3 * sin_q3_closed + d4 * cos_q3_closed) * one_by_length_25
+        margin_elbow_closed = (a3 * sin_q3_closed + d4 * cos_q3_closed) * one_by_length_26
         if searched:
             # wrist centre: the last joints do not move this point
             wrist_x_tried = wrist_x_closed + (r12_at_q6 * sin_q6 - r11_at_q6 * cos_q6) * j6_offset_x
@@ -2543,9 +2620,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         k = self._constants
-        a1, a2, a2_minus_length_25, a2_plus_length_25 = k.a1, k.a2, k.a2_minus_length_25, k.a2_plus_length_25
-        a3_by_length_25, d1, d4_by_length_25, d6 = k.a3_by_length_25, k.d1, k.d4_by_length_25, k.d6
-        length_25, machine_scale_times_free_angle, mid_a1 = k.length_25, k.machine_scale_times_free_angle, k.mid_a1
+        a1, a2, a2_minus_length_26, a2_plus_length_26 = k.a1, k.a2, k.a2_minus_length_26, k.a2_plus_length_26
+        a3_by_length_26, d1, d4_by_length_26, d6 = k.a3_by_length_26, k.d1, k.d4_by_length_26, k.d6
+        length_26, machine_scale_times_free_angle, mid_a1 = k.length_26, k.machine_scale_times_free_angle, k.mid_a1
         mid_a2, mid_a3, mid_a4, mid_a5, mid_a6 = k.mid_a2, k.mid_a3, k.mid_a4, k.mid_a5, k.mid_a6
         offset_a1, offset_a2, offset_a3, offset_a4 = k.offset_a1, k.offset_a2, k.offset_a3, k.offset_a4
         offset_a5, offset_a6, searched, single_a1 = k.offset_a5, k.offset_a6, k.searched, k.single_a1
@@ -2567,16 +2644,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_closed = (a2_plus_length_25 + reach_closed) * (a2_plus_length_25 - reach_closed)
+        one_less_cos_q3_closed = (a2_plus_length_26 + reach_closed) * (a2_plus_length_26 - reach_closed)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (reach_closed - a2_minus_length_25) * (a2_minus_length_25 + reach_closed)
+        one_plus_cos_q3_closed = (reach_closed - a2_minus_length_26) * (a2_minus_length_26 + reach_closed)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = sum_q3_closed if sum_q3_closed > 0.0 else 1.0
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
         # q3: out of reach
         if not (searched or (-1.0000000000005 <= cos_swing_q3_closed <= 1.0000000000005)):
-            missing = max(abs(a2_minus_length_25) - reach_closed, reach_closed - a2_plus_length_25)
+            missing = max(abs(a2_minus_length_26) - reach_closed, reach_closed - a2_plus_length_26)
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         # without an offset, only the first branch of the crossing has a solution
         if not (searched or (sigma_crossing > 0)):
@@ -2631,7 +2708,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 False,
                 reference_a1,
                 reference_a2,
-                reference_a6,
+                arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0),
                 sigma_crossing,
                 sigma_elbow,
                 sigma_shoulder,
@@ -2689,8 +2766,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             # at a singularity: the angle of the reference
             if reach_closed > machine_scale_times_free_angle:
-                arm_along_q2_closed = length_25 * sin_swing_q3_closed
-                arm_across_q2_closed = a2 + length_25 * cos_swing_q3_closed
+                arm_along_q2_closed = length_26 * sin_swing_q3_closed
+                arm_across_q2_closed = a2 + length_26 * cos_swing_q3_closed
                 # rotation by q2 that takes the arm to its target point
                 along_q2_closed = (
                     arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
@@ -2707,8 +2784,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 sin_q2_closed = sin(reference_a2)
             q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
             # addition theorem: plus the angle of the direction from which the cosine is measured
-            cos_q3_closed = a3_by_length_25 * cos_swing_q3_closed + d4_by_length_25 * sin_swing_q3_closed
-            sin_q3_closed = a3_by_length_25 * sin_swing_q3_closed - d4_by_length_25 * cos_swing_q3_closed
+            cos_q3_closed = a3_by_length_26 * cos_swing_q3_closed + d4_by_length_26 * sin_swing_q3_closed
+            sin_q3_closed = a3_by_length_26 * sin_swing_q3_closed - d4_by_length_26 * cos_swing_q3_closed
             q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
             r13_from_q1_closed = r13 * cos_q1_closed + r23 * sin_q1_closed
             sin_q23_closed = cos_q2_closed * sin_q3_closed + cos_q3_closed * sin_q2_closed

@@ -276,3 +276,12 @@ def test_regular_poses_at_right_angles(lateral: float, lengths: dict[str, float]
     reached, turned, _, _ = robot.forward_batch(found)
     assert np.abs(reached - positions).max() < 1e-9 * lengths["d1"]
     assert np.abs(turned - rotations).max() < 1e-10
+
+
+@pytest.mark.parametrize("away", (1e6, 9e8))
+def test_a_reference_many_turns_away_loses_no_pose(away: float) -> None:
+    case = planted("anywhere", 60.0, 40, 19)
+    positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
+    found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.axes + away)
+    assert (statuses == Status.OK).all()
+    assert np.abs(case.robot.forward_batch(found)[0] - positions).max() < 1e-3 * max(1.0, away * 1e-6)

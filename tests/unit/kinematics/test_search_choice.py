@@ -21,6 +21,8 @@ pytestmark = pytest.mark.slow
 A1, A2, A3, A4, A5, A6 = JOINTS[:6]
 ELBOW = Rz(A1) * Tx(L[6]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2])
 ARM = Rz(A1) * Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4)
+ELBOW_ACROSS = Ry(A2) * Tz(L[1]) * Ry(A3) * Tx(L[2]) * Rx(A4) * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
+THREE_PARALLEL = Rz(A1) * Tx(L[6]) * Rx(A2) * Tz(L[1]) * Rx(A3) * Tz(L[2]) * Rx(A4) * Tz(L[3]) * Ry(A5) * Tx(L[4])
 SIDEWAYS = ARM * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
 
 
@@ -130,6 +132,13 @@ def test_a_parameter_named_like_a_value_of_the_search_keeps_its_name(name: str) 
     chain = ARM * Ty(strange) * Ry(A5) * Rx(A6) * Tx(L[4])
     built = build(arm(chain, parameters=(*LENGTHS, strange)))
     assert name in [p.given_name for p in built.parameters] and name not in [p.name for p in built.parameters]
+
+
+@pytest.mark.parametrize("chain", [Rz(A1) * Ty(L[5]) * ELBOW_ACROSS, THREE_PARALLEL * Rz(A6) * Tx(L[5])])
+def test_a_trial_that_is_out_of_reach_elsewhere_is_searched(chain: Chain) -> None:
+    """What a trial divides by vanishes only where a root is of a negative number: at no solution."""
+    found = build(arm(chain))
+    assert found.mechanism.search is not None and found.tried_branches > 0
 
 
 def test_an_angle_of_a_table_counts_in_degrees_in_the_branches_that_are_derived() -> None:

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8629
+    VALUES = 8774
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -61,6 +61,7 @@ class ArrayPrograms(Programs):
         # the residuals of all branches, multiplied, at equal distances around the circle
         (
             sample,
+            size_of_terms,
             wave_cos_0,
             wave_cos_1,
             wave_cos_2,
@@ -83,7 +84,29 @@ class ArrayPrograms(Programs):
             wave_sin_9,
             wave_sin_10,
         ) = initial(
-            0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
         )
         for _ in range(22):
             tried = 0.1 + 0.299199300341885 * sample
@@ -95,258 +118,262 @@ class ArrayPrograms(Programs):
             wrist_y_tried = (
                 goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
             )
-            factor_8_part = -wrist_x_tried * wrist_x_tried - wrist_y_tried * wrist_y_tried
             wrist_z_tried = (
                 goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r33
             )
             wrist_z_from_q1_tried = wrist_z_tried - k.d1
-            factor_9_root_1_part = -wrist_x_tried / factor_8_part
-            factor_13_root_1_part = factor_9_root_1_part * wrist_x_tried
-            factor_11_root_1_part = -wrist_y_tried / factor_8_part
-            factor_14_root_1_part = factor_11_root_1_part * wrist_y_tried
-            wrist_x_from_q1_root_1_part = factor_13_root_1_part + factor_14_root_1_part
-            product_in_factor_17_part = factor_8_part * wrist_x_from_q1_root_1_part
-            factor_17_part = -product_in_factor_17_part * wrist_x_from_q1_root_1_part
-            factor_18_part = k.a1_squared + factor_17_part
-            length_q2_part = factor_18_part + wrist_z_from_q1_tried * wrist_z_from_q1_tried
-            factor_18_root_1_part = -k.twice_a1 * wrist_x_from_q1_root_1_part
-            product_in_factor_105_part = factor_18_root_1_part * factor_8_part
-            factor_105_part = factor_18_root_1_part * product_in_factor_105_part
-            factor_106_part = factor_105_part + length_q2_part * length_q2_part
-            factor_27_part = k.a2_plus_length_25_squared - length_q2_part
-            factor_29_part = length_q2_part - k.a2_minus_length_25_squared
-            factor_34_part = factor_105_part + factor_27_part * factor_29_part
-            factor_27_part_minus_factor_29_part = factor_27_part - factor_29_part
-            factor_34_root_1_part = factor_18_root_1_part * factor_27_part_minus_factor_29_part
-            factor_123_root_1_part = factor_9_root_1_part * goal_r12
-            factor_124_root_1_part = factor_11_root_1_part * goal_r22
-            r12_from_q1_root_1_part = factor_123_root_1_part + factor_124_root_1_part
-            sum_q3_part = factor_27_part + factor_29_part
-            one_by_sum_q3_part = 1.0 / sum_q3_part
-            factor_31_part = -factor_27_part_minus_factor_29_part * one_by_sum_q3_part
-            factor_42_part = k.a3 * factor_31_part
-            factor_44_part = factor_42_part * k.one_by_length_25
-            factor_31_root_1_part = 2.0 * factor_18_root_1_part * one_by_sum_q3_part
-            factor_42_root_1_part = k.a3 * factor_31_root_1_part
-            factor_44_root_1_part = factor_42_root_1_part * k.one_by_length_25
-            factor_37_part = 2.0 * one_by_sum_q3_part
-            factor_46_root_3_part = k.d4 * factor_37_part
-            factor_47_root_3_part = factor_46_root_3_part * k.one_by_length_25
-            factor_61_part = k.a3 * factor_44_part
-            factor_50_part = -k.d4 * factor_31_part
-            factor_52_part = factor_50_part * k.one_by_length_25
-            factor_64_part = -k.d4 * factor_52_part
-            arm_across_q2_part = k.a2 + factor_61_part + factor_64_part
-            factor_69_part = arm_across_q2_part * wrist_z_from_q1_tried
-            factor_61_root_1_part = k.a3 * factor_44_root_1_part
-            factor_50_root_1_part = -k.d4 * factor_31_root_1_part
-            factor_52_root_1_part = factor_50_root_1_part * k.one_by_length_25
-            factor_64_root_1_part = -k.d4 * factor_52_root_1_part
-            arm_across_q2_root_1_part = factor_61_root_1_part + factor_64_root_1_part
-            factor_69_root_1_part = arm_across_q2_root_1_part * wrist_z_from_q1_tried
-            one_by_factor_106_part = 1.0 / factor_106_part
-            factor_109_root_1_part = (
-                factor_69_root_1_part * length_q2_part - factor_18_root_1_part * factor_69_part
-            ) * one_by_factor_106_part
-            factor_48_root_3_part = k.a3 * factor_37_part
-            factor_49_root_3_part = factor_48_root_3_part * k.one_by_length_25
-            factor_54_root_3_part = k.a3 * factor_49_root_3_part
-            factor_57_root_3_part = k.d4 * factor_47_root_3_part
-            arm_along_q2_root_3_part = factor_54_root_3_part + factor_57_root_3_part
-            factor_71_root_3_part = -k.a1 * arm_along_q2_root_3_part
-            factor_71_root_1_root_3_part = arm_along_q2_root_3_part * wrist_x_from_q1_root_1_part
-            product_in_factor_108_root_3_part = one_by_factor_106_part * product_in_factor_105_part
-            factor_108_root_3_part = factor_71_root_1_root_3_part * product_in_factor_108_root_3_part
-            product_in_factor_109_root_3_part = length_q2_part * one_by_factor_106_part
-            factor_109_root_3_part = factor_108_root_3_part + factor_71_root_3_part * product_in_factor_109_root_3_part
-            factor_109_root_1_root_3_part = (
-                factor_71_root_1_root_3_part * length_q2_part - factor_18_root_1_part * factor_71_root_3_part
-            ) * one_by_factor_106_part
-            factor_156_root_1_root_3_part = (
-                factor_109_root_1_part * factor_47_root_3_part
-                + factor_109_root_1_root_3_part * factor_44_part
-                + factor_109_root_3_part * factor_44_root_1_part
+            factor_8_part = -wrist_x_tried * wrist_x_tried - wrist_y_tried * wrist_y_tried
+            factor_8_part_or_1 = select(absolute(factor_8_part) > 0.0, factor_8_part, 1.0)
+            factor_10_root_1_part = -wrist_x_tried / factor_8_part_or_1
+            factor_14_root_1_part = factor_10_root_1_part * wrist_x_tried
+            factor_12_root_1_part = -wrist_y_tried / factor_8_part_or_1
+            factor_15_root_1_part = factor_12_root_1_part * wrist_y_tried
+            wrist_x_from_q1_root_1_part = factor_14_root_1_part + factor_15_root_1_part
+            product_in_factor_18_part = factor_8_part * wrist_x_from_q1_root_1_part
+            factor_18_part = -product_in_factor_18_part * wrist_x_from_q1_root_1_part
+            factor_19_part = k.a1_squared + factor_18_part
+            factor_27_part = -factor_19_part - wrist_z_from_q1_tried * wrist_z_from_q1_tried
+            factor_28_part = k.a2_plus_length_26_squared + factor_27_part
+            factor_30_part = -k.a2_minus_length_26_squared - factor_27_part
+            factor_19_root_1_part = -k.twice_a1 * wrist_x_from_q1_root_1_part
+            product_in_factor_35_part = factor_19_root_1_part * factor_8_part
+            factor_35_part = factor_19_root_1_part * product_in_factor_35_part
+            factor_36_part = factor_35_part + factor_28_part * factor_30_part
+            factor_28_part_minus_factor_30_part = factor_28_part - factor_30_part
+            factor_36_root_1_part = factor_19_root_1_part * factor_28_part_minus_factor_30_part
+            factor_127_root_1_part = factor_10_root_1_part * goal_r12
+            factor_128_root_1_part = factor_12_root_1_part * goal_r22
+            r12_from_q1_root_1_part = factor_127_root_1_part + factor_128_root_1_part
+            sum_q3_part = factor_28_part + factor_30_part
+            sum_q3_part_or_1 = select(absolute(sum_q3_part) > 0.0, sum_q3_part, 1.0)
+            one_by_sum_q3_part = 1.0 / sum_q3_part_or_1
+            factor_33_part = -factor_28_part_minus_factor_30_part * one_by_sum_q3_part
+            factor_44_part = k.a3 * factor_33_part
+            factor_47_part = factor_44_part * k.one_by_length_26_or_1
+            factor_33_root_1_part = 2.0 * factor_19_root_1_part * one_by_sum_q3_part
+            factor_44_root_1_part = k.a3 * factor_33_root_1_part
+            factor_47_root_1_part = factor_44_root_1_part * k.one_by_length_26_or_1
+            factor_39_part = 2.0 * one_by_sum_q3_part
+            factor_49_root_3_part = k.d4 * factor_39_part
+            factor_50_root_3_part = factor_49_root_3_part * k.one_by_length_26_or_1
+            factor_64_part = k.a3 * factor_47_part
+            factor_53_part = -k.d4 * factor_33_part
+            factor_55_part = factor_53_part * k.one_by_length_26_or_1
+            factor_67_part = -k.d4 * factor_55_part
+            arm_across_q2_part = k.a2 + factor_64_part + factor_67_part
+            factor_72_part = arm_across_q2_part * wrist_z_from_q1_tried
+            factor_64_root_1_part = k.a3 * factor_47_root_1_part
+            factor_53_root_1_part = -k.d4 * factor_33_root_1_part
+            factor_55_root_1_part = factor_53_root_1_part * k.one_by_length_26_or_1
+            factor_67_root_1_part = -k.d4 * factor_55_root_1_part
+            arm_across_q2_root_1_part = factor_64_root_1_part + factor_67_root_1_part
+            factor_72_root_1_part = arm_across_q2_root_1_part * wrist_z_from_q1_tried
+            factor_109_part = factor_35_part + factor_27_part * factor_27_part
+            factor_109_part_or_1 = select(absolute(factor_109_part) > 0.0, factor_109_part, 1.0)
+            one_by_factor_109_part_or_1 = 1.0 / factor_109_part_or_1
+            factor_113_root_1_part = (
+                -factor_19_root_1_part * factor_72_part - factor_27_part * factor_72_root_1_part
+            ) * one_by_factor_109_part_or_1
+            factor_51_root_3_part = k.a3 * factor_39_part
+            factor_52_root_3_part = factor_51_root_3_part * k.one_by_length_26_or_1
+            factor_57_root_3_part = k.a3 * factor_52_root_3_part
+            factor_60_root_3_part = k.d4 * factor_50_root_3_part
+            arm_along_q2_root_3_part = factor_57_root_3_part + factor_60_root_3_part
+            factor_74_root_3_part = -k.a1 * arm_along_q2_root_3_part
+            factor_74_root_1_root_3_part = arm_along_q2_root_3_part * wrist_x_from_q1_root_1_part
+            product_in_factor_112_root_3_part = one_by_factor_109_part_or_1 * product_in_factor_35_part
+            factor_112_root_3_part = factor_74_root_1_root_3_part * product_in_factor_112_root_3_part
+            product_in_factor_113_root_3_part = factor_27_part * one_by_factor_109_part_or_1
+            factor_113_root_3_part = factor_112_root_3_part - factor_74_root_3_part * product_in_factor_113_root_3_part
+            factor_113_root_1_root_3_part = (
+                -factor_19_root_1_part * factor_74_root_3_part - factor_27_part * factor_74_root_1_root_3_part
+            ) * one_by_factor_109_part_or_1
+            factor_160_root_1_root_3_part = (
+                factor_113_root_1_part * factor_50_root_3_part
+                + factor_113_root_1_root_3_part * factor_47_part
+                + factor_113_root_3_part * factor_47_root_1_part
             )
-            factor_73_part = -arm_across_q2_root_1_part * product_in_factor_17_part
-            factor_74_part = factor_73_part - k.a1 * arm_across_q2_part
-            factor_74_root_1_part = arm_across_q2_part * wrist_x_from_q1_root_1_part - k.a1 * arm_across_q2_root_1_part
-            factor_116_root_1_part = (
-                factor_74_root_1_part * length_q2_part - factor_18_root_1_part * factor_74_part
-            ) * one_by_factor_106_part
-            factor_76_root_3_part = -arm_along_q2_root_3_part * wrist_z_from_q1_tried
-            factor_116_root_3_part = factor_76_root_3_part * product_in_factor_109_root_3_part
-            factor_116_root_1_root_3_part = -factor_18_root_1_part * factor_76_root_3_part * one_by_factor_106_part
-            factor_166_root_1_root_3_part = (
-                -factor_116_root_1_part * factor_49_root_3_part
-                - factor_116_root_1_root_3_part * factor_52_part
-                - factor_116_root_3_part * factor_52_root_1_part
+            factor_76_part = -arm_across_q2_root_1_part * product_in_factor_18_part
+            factor_77_part = factor_76_part - k.a1 * arm_across_q2_part
+            factor_77_root_1_part = arm_across_q2_part * wrist_x_from_q1_root_1_part - k.a1 * arm_across_q2_root_1_part
+            factor_120_root_1_part = (
+                -factor_19_root_1_part * factor_77_part - factor_27_part * factor_77_root_1_part
+            ) * one_by_factor_109_part_or_1
+            factor_79_root_3_part = -arm_along_q2_root_3_part * wrist_z_from_q1_tried
+            factor_120_root_3_part = -factor_79_root_3_part * product_in_factor_113_root_3_part
+            factor_120_root_1_root_3_part = -factor_19_root_1_part * factor_79_root_3_part * one_by_factor_109_part_or_1
+            factor_170_root_1_root_3_part = (
+                -factor_120_root_1_part * factor_52_root_3_part
+                - factor_120_root_1_root_3_part * factor_55_part
+                - factor_120_root_3_part * factor_55_root_1_part
             )
-            cos_q23_root_1_root_3_part = factor_156_root_1_root_3_part + factor_166_root_1_root_3_part
-            product_in_factor_187_root_3_part = factor_8_part * r12_from_q1_root_1_part
-            factor_187_root_3_part = -product_in_factor_187_root_3_part * cos_q23_root_1_root_3_part
-            factor_107_part = factor_69_root_1_part * product_in_factor_108_root_3_part
-            factor_109_part = factor_107_part + factor_69_part * product_in_factor_109_root_3_part
-            product_in_factor_131_root_3_part = factor_52_root_1_part * factor_8_part
-            factor_131_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_131_root_3_part
-            factor_132_root_3_part = (
-                factor_131_root_3_part
-                + factor_109_part * factor_49_root_3_part
-                + factor_109_root_3_part * factor_52_part
+            cos_q23_root_1_root_3_part = factor_160_root_1_root_3_part + factor_170_root_1_root_3_part
+            product_in_factor_191_root_3_part = factor_8_part * r12_from_q1_root_1_part
+            factor_191_root_3_part = -product_in_factor_191_root_3_part * cos_q23_root_1_root_3_part
+            factor_111_part = factor_72_root_1_part * product_in_factor_112_root_3_part
+            factor_113_part = factor_111_part - factor_72_part * product_in_factor_113_root_3_part
+            product_in_factor_135_root_3_part = factor_55_root_1_part * factor_8_part
+            factor_135_root_3_part = -factor_113_root_1_root_3_part * product_in_factor_135_root_3_part
+            factor_136_root_3_part = (
+                factor_135_root_3_part
+                + factor_113_part * factor_52_root_3_part
+                + factor_113_root_3_part * factor_55_part
             )
-            factor_115_part = factor_74_root_1_part * product_in_factor_108_root_3_part
-            factor_116_part = factor_115_part + factor_74_part * product_in_factor_109_root_3_part
-            product_in_factor_137_root_3_part = factor_44_root_1_part * factor_8_part
-            factor_137_root_3_part = -factor_116_root_1_root_3_part * product_in_factor_137_root_3_part
-            factor_142_root_3_part = (
-                factor_137_root_3_part
-                + factor_116_part * factor_47_root_3_part
-                + factor_116_root_3_part * factor_44_part
+            factor_119_part = factor_77_root_1_part * product_in_factor_112_root_3_part
+            factor_120_part = factor_119_part - factor_77_part * product_in_factor_113_root_3_part
+            product_in_factor_141_root_3_part = factor_47_root_1_part * factor_8_part
+            factor_141_root_3_part = -factor_120_root_1_root_3_part * product_in_factor_141_root_3_part
+            factor_146_root_3_part = (
+                factor_141_root_3_part
+                + factor_120_part * factor_50_root_3_part
+                + factor_120_root_3_part * factor_47_part
             )
-            sin_q23_root_3_part = factor_132_root_3_part + factor_142_root_3_part
-            factor_190_root_3_part = -goal_r32 * sin_q23_root_3_part
-            r12_from_q123_root_3_part = factor_187_root_3_part + factor_190_root_3_part
-            factor_198_root_3_part = r12_from_q123_root_3_part * cos_q6_tried
-            factor_120_root_1_part = factor_9_root_1_part * goal_r11
-            factor_121_root_1_part = factor_11_root_1_part * goal_r21
-            r11_from_q1_root_1_part = factor_120_root_1_part + factor_121_root_1_part
-            product_in_factor_175_root_3_part = factor_8_part * r11_from_q1_root_1_part
-            factor_175_root_3_part = -product_in_factor_175_root_3_part * cos_q23_root_1_root_3_part
-            factor_178_root_3_part = -goal_r31 * sin_q23_root_3_part
-            r11_from_q123_root_3_part = factor_175_root_3_part + factor_178_root_3_part
-            factor_202_root_3_part = r11_from_q123_root_3_part * sin_q6_tried
-            r12_from_q123_before_q6_root_3_part = factor_198_root_3_part + factor_202_root_3_part
-            factor_153_root_3_part = -factor_109_root_1_root_3_part * product_in_factor_137_root_3_part
-            factor_156_root_3_part = (
-                factor_153_root_3_part
-                + factor_109_part * factor_47_root_3_part
-                + factor_109_root_3_part * factor_44_part
+            sin_q23_root_3_part = factor_136_root_3_part + factor_146_root_3_part
+            factor_194_root_3_part = -goal_r32 * sin_q23_root_3_part
+            r12_from_q123_root_3_part = factor_191_root_3_part + factor_194_root_3_part
+            factor_202_root_3_part = r12_from_q123_root_3_part * cos_q6_tried
+            factor_124_root_1_part = factor_10_root_1_part * goal_r11
+            factor_125_root_1_part = factor_12_root_1_part * goal_r21
+            r11_from_q1_root_1_part = factor_124_root_1_part + factor_125_root_1_part
+            product_in_factor_179_root_3_part = factor_8_part * r11_from_q1_root_1_part
+            factor_179_root_3_part = -product_in_factor_179_root_3_part * cos_q23_root_1_root_3_part
+            factor_182_root_3_part = -goal_r31 * sin_q23_root_3_part
+            r11_from_q123_root_3_part = factor_179_root_3_part + factor_182_root_3_part
+            factor_206_root_3_part = r11_from_q123_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_3_part = factor_202_root_3_part + factor_206_root_3_part
+            factor_157_root_3_part = -factor_113_root_1_root_3_part * product_in_factor_141_root_3_part
+            factor_160_root_3_part = (
+                factor_157_root_3_part
+                + factor_113_part * factor_50_root_3_part
+                + factor_113_root_3_part * factor_47_part
             )
-            factor_165_root_3_part = factor_116_root_1_root_3_part * product_in_factor_131_root_3_part
-            factor_166_root_3_part = (
-                factor_165_root_3_part
-                - factor_116_part * factor_49_root_3_part
-                - factor_116_root_3_part * factor_52_part
+            factor_169_root_3_part = factor_120_root_1_root_3_part * product_in_factor_135_root_3_part
+            factor_170_root_3_part = (
+                factor_169_root_3_part
+                - factor_120_part * factor_52_root_3_part
+                - factor_120_root_3_part * factor_55_part
             )
-            cos_q23_root_3_part = factor_156_root_3_part + factor_166_root_3_part
-            factor_188_root_1_root_3_part = r12_from_q1_root_1_part * cos_q23_root_3_part
-            factor_132_root_1_root_3_part = (
-                factor_109_root_1_part * factor_49_root_3_part
-                + factor_109_root_1_root_3_part * factor_52_part
-                + factor_109_root_3_part * factor_52_root_1_part
+            cos_q23_root_3_part = factor_160_root_3_part + factor_170_root_3_part
+            factor_192_root_1_root_3_part = r12_from_q1_root_1_part * cos_q23_root_3_part
+            factor_136_root_1_root_3_part = (
+                factor_113_root_1_part * factor_52_root_3_part
+                + factor_113_root_1_root_3_part * factor_55_part
+                + factor_113_root_3_part * factor_55_root_1_part
             )
-            factor_142_root_1_root_3_part = (
-                factor_116_root_1_part * factor_47_root_3_part
-                + factor_116_root_1_root_3_part * factor_44_part
-                + factor_116_root_3_part * factor_44_root_1_part
+            factor_146_root_1_root_3_part = (
+                factor_120_root_1_part * factor_50_root_3_part
+                + factor_120_root_1_root_3_part * factor_47_part
+                + factor_120_root_3_part * factor_47_root_1_part
             )
-            sin_q23_root_1_root_3_part = factor_132_root_1_root_3_part + factor_142_root_1_root_3_part
-            factor_190_root_1_root_3_part = -goal_r32 * sin_q23_root_1_root_3_part
-            r12_from_q123_root_1_root_3_part = factor_188_root_1_root_3_part + factor_190_root_1_root_3_part
-            factor_198_root_1_root_3_part = r12_from_q123_root_1_root_3_part * cos_q6_tried
-            factor_176_root_1_root_3_part = r11_from_q1_root_1_part * cos_q23_root_3_part
-            factor_178_root_1_root_3_part = -goal_r31 * sin_q23_root_1_root_3_part
-            r11_from_q123_root_1_root_3_part = factor_176_root_1_root_3_part + factor_178_root_1_root_3_part
-            factor_202_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
-            r12_from_q123_before_q6_root_1_root_3_part = factor_198_root_1_root_3_part + factor_202_root_1_root_3_part
-            factor_301_part = (
+            sin_q23_root_1_root_3_part = factor_136_root_1_root_3_part + factor_146_root_1_root_3_part
+            factor_194_root_1_root_3_part = -goal_r32 * sin_q23_root_1_root_3_part
+            r12_from_q123_root_1_root_3_part = factor_192_root_1_root_3_part + factor_194_root_1_root_3_part
+            factor_202_root_1_root_3_part = r12_from_q123_root_1_root_3_part * cos_q6_tried
+            factor_180_root_1_root_3_part = r11_from_q1_root_1_part * cos_q23_root_3_part
+            factor_182_root_1_root_3_part = -goal_r31 * sin_q23_root_1_root_3_part
+            r11_from_q123_root_1_root_3_part = factor_180_root_1_root_3_part + factor_182_root_1_root_3_part
+            factor_206_root_1_root_3_part = r11_from_q123_root_1_root_3_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_root_3_part = factor_202_root_1_root_3_part + factor_206_root_1_root_3_part
+            factor_214_part = (
                 -factor_8_part * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_1_root_3_part
             )
-            factor_302_part = (
-                factor_301_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
+            factor_215_part = (
+                factor_214_part + r12_from_q123_before_q6_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_302_root_1_part = (
+            factor_215_root_1_part = (
                 2.0 * r12_from_q123_before_q6_root_1_root_3_part * r12_from_q123_before_q6_root_3_part
             )
-            factor_305_root_1_part = factor_302_part * factor_34_root_1_part + factor_302_root_1_part * factor_34_part
-            factor_150_part = -factor_109_root_1_part * product_in_factor_137_root_3_part
-            product_in_factor_151_part = factor_34_part * factor_47_root_3_part
-            factor_151_part = factor_109_root_3_part * product_in_factor_151_part
-            product_in_factor_154_part = factor_34_root_1_part * factor_8_part
-            product_in_factor_154_part_2 = factor_47_root_3_part * product_in_factor_154_part
-            factor_154_part = -factor_109_root_1_root_3_part * product_in_factor_154_part_2
-            factor_156_part = factor_150_part + factor_151_part + factor_154_part + factor_109_part * factor_44_part
-            factor_160_part = factor_116_root_1_part * product_in_factor_131_root_3_part
-            product_in_factor_161_part = factor_34_part * factor_49_root_3_part
-            factor_161_part = -factor_116_root_3_part * product_in_factor_161_part
-            product_in_factor_163_part = factor_49_root_3_part * product_in_factor_154_part
-            factor_163_part = factor_116_root_1_root_3_part * product_in_factor_163_part
-            factor_166_part = factor_160_part + factor_161_part + factor_163_part - factor_116_part * factor_52_part
-            cos_q23_part = factor_156_part + factor_166_part
-            factor_188_root_1_part = r12_from_q1_root_1_part * cos_q23_part
-            product_in_factor_127_root_1_part = factor_109_root_3_part * factor_34_root_1_part
-            factor_127_root_1_part = factor_49_root_3_part * product_in_factor_127_root_1_part
-            factor_130_root_1_part = factor_109_root_1_root_3_part * product_in_factor_161_part
-            factor_132_root_1_part = (
-                factor_127_root_1_part
-                + factor_130_root_1_part
-                + factor_109_part * factor_52_root_1_part
-                + factor_109_root_1_part * factor_52_part
+            factor_218_root_1_part = factor_215_part * factor_36_root_1_part + factor_215_root_1_part * factor_36_part
+            factor_154_part = -factor_113_root_1_part * product_in_factor_141_root_3_part
+            product_in_factor_155_part = factor_36_part * factor_50_root_3_part
+            factor_155_part = factor_113_root_3_part * product_in_factor_155_part
+            product_in_factor_158_part = factor_36_root_1_part * factor_8_part
+            product_in_factor_158_part_2 = factor_50_root_3_part * product_in_factor_158_part
+            factor_158_part = -factor_113_root_1_root_3_part * product_in_factor_158_part_2
+            factor_160_part = factor_154_part + factor_155_part + factor_158_part + factor_113_part * factor_47_part
+            factor_164_part = factor_120_root_1_part * product_in_factor_135_root_3_part
+            product_in_factor_165_part = factor_36_part * factor_52_root_3_part
+            factor_165_part = -factor_120_root_3_part * product_in_factor_165_part
+            product_in_factor_167_part = factor_52_root_3_part * product_in_factor_158_part
+            factor_167_part = factor_120_root_1_root_3_part * product_in_factor_167_part
+            factor_170_part = factor_164_part + factor_165_part + factor_167_part - factor_120_part * factor_55_part
+            cos_q23_part = factor_160_part + factor_170_part
+            factor_192_root_1_part = r12_from_q1_root_1_part * cos_q23_part
+            product_in_factor_131_root_1_part = factor_113_root_3_part * factor_36_root_1_part
+            factor_131_root_1_part = factor_52_root_3_part * product_in_factor_131_root_1_part
+            factor_134_root_1_part = factor_113_root_1_root_3_part * product_in_factor_165_part
+            factor_136_root_1_part = (
+                factor_131_root_1_part
+                + factor_134_root_1_part
+                + factor_113_part * factor_55_root_1_part
+                + factor_113_root_1_part * factor_55_part
             )
-            product_in_factor_138_root_1_part = factor_116_root_3_part * factor_34_root_1_part
-            factor_138_root_1_part = factor_47_root_3_part * product_in_factor_138_root_1_part
-            factor_141_root_1_part = factor_116_root_1_root_3_part * product_in_factor_151_part
-            factor_142_root_1_part = (
-                factor_138_root_1_part
-                + factor_141_root_1_part
-                + factor_116_part * factor_44_root_1_part
-                + factor_116_root_1_part * factor_44_part
+            product_in_factor_142_root_1_part = factor_120_root_3_part * factor_36_root_1_part
+            factor_142_root_1_part = factor_50_root_3_part * product_in_factor_142_root_1_part
+            factor_145_root_1_part = factor_120_root_1_root_3_part * product_in_factor_155_part
+            factor_146_root_1_part = (
+                factor_142_root_1_part
+                + factor_145_root_1_part
+                + factor_120_part * factor_47_root_1_part
+                + factor_120_root_1_part * factor_47_part
             )
-            sin_q23_root_1_part = factor_132_root_1_part + factor_142_root_1_part
-            factor_190_root_1_part = -goal_r32 * sin_q23_root_1_part
-            r12_from_q123_root_1_part = factor_188_root_1_part + factor_190_root_1_part
-            factor_198_root_1_part = r12_from_q123_root_1_part * cos_q6_tried
-            factor_176_root_1_part = r11_from_q1_root_1_part * cos_q23_part
-            factor_178_root_1_part = -goal_r31 * sin_q23_root_1_part
-            r11_from_q123_root_1_part = factor_176_root_1_part + factor_178_root_1_part
-            factor_202_root_1_part = r11_from_q123_root_1_part * sin_q6_tried
-            r12_from_q123_before_q6_root_1_part = factor_198_root_1_part + factor_202_root_1_part
-            factor_151_root_1_part = factor_47_root_3_part * product_in_factor_127_root_1_part
-            factor_155_root_1_part = factor_109_root_1_root_3_part * product_in_factor_151_part
-            factor_156_root_1_part = (
-                factor_151_root_1_part
-                + factor_155_root_1_part
-                + factor_109_part * factor_44_root_1_part
-                + factor_109_root_1_part * factor_44_part
+            sin_q23_root_1_part = factor_136_root_1_part + factor_146_root_1_part
+            factor_194_root_1_part = -goal_r32 * sin_q23_root_1_part
+            r12_from_q123_root_1_part = factor_192_root_1_part + factor_194_root_1_part
+            factor_202_root_1_part = r12_from_q123_root_1_part * cos_q6_tried
+            factor_180_root_1_part = r11_from_q1_root_1_part * cos_q23_part
+            factor_182_root_1_part = -goal_r31 * sin_q23_root_1_part
+            r11_from_q123_root_1_part = factor_180_root_1_part + factor_182_root_1_part
+            factor_206_root_1_part = r11_from_q123_root_1_part * sin_q6_tried
+            r12_from_q123_before_q6_root_1_part = factor_202_root_1_part + factor_206_root_1_part
+            factor_155_root_1_part = factor_50_root_3_part * product_in_factor_131_root_1_part
+            factor_159_root_1_part = factor_113_root_1_root_3_part * product_in_factor_155_part
+            factor_160_root_1_part = (
+                factor_155_root_1_part
+                + factor_159_root_1_part
+                + factor_113_part * factor_47_root_1_part
+                + factor_113_root_1_part * factor_47_part
             )
-            factor_161_root_1_part = -factor_49_root_3_part * product_in_factor_138_root_1_part
-            factor_164_root_1_part = -factor_116_root_1_root_3_part * product_in_factor_161_part
-            factor_166_root_1_part = (
-                factor_161_root_1_part
-                + factor_164_root_1_part
-                - factor_116_part * factor_52_root_1_part
-                - factor_116_root_1_part * factor_52_part
+            factor_165_root_1_part = -factor_52_root_3_part * product_in_factor_142_root_1_part
+            factor_168_root_1_part = -factor_120_root_1_root_3_part * product_in_factor_165_part
+            factor_170_root_1_part = (
+                factor_165_root_1_part
+                + factor_168_root_1_part
+                - factor_120_part * factor_55_root_1_part
+                - factor_120_root_1_part * factor_55_part
             )
-            cos_q23_root_1_part = factor_156_root_1_part + factor_166_root_1_part
-            factor_186_part = -product_in_factor_187_root_3_part * cos_q23_root_1_part
-            factor_126_part = -factor_109_root_1_part * product_in_factor_131_root_3_part
-            factor_127_part = factor_109_root_3_part * product_in_factor_161_part
-            factor_129_part = -factor_109_root_1_root_3_part * product_in_factor_163_part
-            factor_132_part = factor_126_part + factor_127_part + factor_129_part + factor_109_part * factor_52_part
-            factor_136_part = -factor_116_root_1_part * product_in_factor_137_root_3_part
-            factor_138_part = factor_116_root_3_part * product_in_factor_151_part
-            factor_140_part = -factor_116_root_1_root_3_part * product_in_factor_154_part_2
-            factor_142_part = factor_136_part + factor_138_part + factor_140_part + factor_116_part * factor_44_part
-            sin_q23_part = factor_132_part + factor_142_part
-            factor_190_part = -goal_r32 * sin_q23_part
-            r12_from_q123_part = factor_186_part + factor_190_part
-            factor_198_part = r12_from_q123_part * cos_q6_tried
-            factor_174_part = -product_in_factor_175_root_3_part * cos_q23_root_1_part
-            factor_178_part = -goal_r31 * sin_q23_part
-            r11_from_q123_part = factor_174_part + factor_178_part
-            factor_202_part = r11_from_q123_part * sin_q6_tried
-            r12_from_q123_before_q6_part = factor_198_part + factor_202_part
-            factor_308_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
-            product_310_root_1_part = factor_308_root_1_part - factor_305_root_1_part
-            factor_312_part = product_310_root_1_part * product_310_root_1_part
-            factor_313_part = -factor_312_part * factor_8_part
-            factor_304_part = -factor_302_root_1_part * product_in_factor_154_part
-            factor_305_part = factor_304_part + factor_302_part * factor_34_part
-            factor_307_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
-            factor_308_part = factor_307_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
-            product_310_part = factor_308_part - factor_305_part
-            factor_314_part = product_310_part * product_310_part
-            product_315_part = factor_314_part - factor_313_part
-            taken = 0.09523809523809523 * factor_106_part * factor_8_part * factor_8_part * product_315_part
+            cos_q23_root_1_part = factor_160_root_1_part + factor_170_root_1_part
+            factor_190_part = -product_in_factor_191_root_3_part * cos_q23_root_1_part
+            factor_130_part = -factor_113_root_1_part * product_in_factor_135_root_3_part
+            factor_131_part = factor_113_root_3_part * product_in_factor_165_part
+            factor_133_part = -factor_113_root_1_root_3_part * product_in_factor_167_part
+            factor_136_part = factor_130_part + factor_131_part + factor_133_part + factor_113_part * factor_55_part
+            factor_140_part = -factor_120_root_1_part * product_in_factor_141_root_3_part
+            factor_142_part = factor_120_root_3_part * product_in_factor_155_part
+            factor_144_part = -factor_120_root_1_root_3_part * product_in_factor_158_part_2
+            factor_146_part = factor_140_part + factor_142_part + factor_144_part + factor_120_part * factor_47_part
+            sin_q23_part = factor_136_part + factor_146_part
+            factor_194_part = -goal_r32 * sin_q23_part
+            r12_from_q123_part = factor_190_part + factor_194_part
+            factor_202_part = r12_from_q123_part * cos_q6_tried
+            factor_178_part = -product_in_factor_179_root_3_part * cos_q23_root_1_part
+            factor_182_part = -goal_r31 * sin_q23_part
+            r11_from_q123_part = factor_178_part + factor_182_part
+            factor_206_part = r11_from_q123_part * sin_q6_tried
+            r12_from_q123_before_q6_part = factor_202_part + factor_206_part
+            factor_221_root_1_part = 2.0 * r12_from_q123_before_q6_part * r12_from_q123_before_q6_root_1_part
+            product_223_root_1_part = factor_221_root_1_part - factor_218_root_1_part
+            factor_225_part = product_223_root_1_part * product_223_root_1_part
+            factor_226_part = -factor_225_part * factor_8_part
+            factor_217_part = -factor_215_root_1_part * product_in_factor_158_part
+            factor_218_part = factor_217_part + factor_215_part * factor_36_part
+            factor_220_part = -factor_8_part * r12_from_q123_before_q6_root_1_part * r12_from_q123_before_q6_root_1_part
+            factor_221_part = factor_220_part + r12_from_q123_before_q6_part * r12_from_q123_before_q6_part
+            product_223_part = factor_221_part - factor_218_part
+            factor_227_part = product_223_part * product_223_part
+            cleared_by = factor_109_part * factor_8_part * factor_8_part
+            product_228_part = factor_227_part - factor_226_part
+            taken = 0.09523809523809523 * cleared_by * product_228_part
             level = 0.5 * taken
             cos_2 = cos_q6_tried * cos_q6_tried - sin_q6_tried * sin_q6_tried
             sin_2 = 2.0 * cos_q6_tried * sin_q6_tried
@@ -371,6 +398,7 @@ class ArrayPrograms(Programs):
                 break
             (
                 sample,
+                size_of_terms,
                 wave_cos_0,
                 wave_cos_1,
                 wave_cos_2,
@@ -396,6 +424,7 @@ class ArrayPrograms(Programs):
                 done,
                 (
                     sample,
+                    size_of_terms,
                     wave_cos_0,
                     wave_cos_1,
                     wave_cos_2,
@@ -420,6 +449,8 @@ class ArrayPrograms(Programs):
                 ),
                 (
                     1 + sample,
+                    size_of_terms
+                    + absolute(cleared_by) * (1e-12 + absolute(factor_226_part) + absolute(factor_227_part)),
                     level + wave_cos_0,
                     wave_cos_1 + taken * cos_q6_tried,
                     wave_cos_2 + taken * cos_2,
@@ -451,7 +482,7 @@ class ArrayPrograms(Programs):
         sum_in_rounding_0_6 = absolute(wave_cos_4) + absolute(wave_sin_4)
         sum_in_rounding_0_7 = absolute(wave_cos_8) + absolute(wave_sin_8)
         sum_in_rounding_0_8 = absolute(wave_cos_5) + absolute(wave_sin_5)
-        rounding_0 = 1e-14 * (
+        rounding_0 = 1e-16 * size_of_terms + 1e-14 * (
             sum_in_rounding_0
             + sum_in_rounding_0_2
             + sum_in_rounding_0_3
@@ -791,14 +822,14 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
         r11_from_q1_tried = goal_r11 * cos_q1_tried + goal_r21 * sin_q1_tried
-        a2_plus_length_25_minus_reach_tried = k.a2_plus_length_25 - reach_tried
-        a2_plus_length_25_plus_reach_tried = k.a2_plus_length_25 + reach_tried
+        a2_plus_length_26_minus_reach_tried = k.a2_plus_length_26 - reach_tried
+        a2_plus_length_26_plus_reach_tried = k.a2_plus_length_26 + reach_tried
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = a2_plus_length_25_minus_reach_tried * a2_plus_length_25_plus_reach_tried
-        a2_minus_length_25_minus_reach_tried = k.a2_minus_length_25 - reach_tried
-        a2_minus_length_25_plus_reach_tried = k.a2_minus_length_25 + reach_tried
+        one_less_cos_q3_tried = a2_plus_length_26_minus_reach_tried * a2_plus_length_26_plus_reach_tried
+        a2_minus_length_26_minus_reach_tried = k.a2_minus_length_26 - reach_tried
+        a2_minus_length_26_plus_reach_tried = k.a2_minus_length_26 + reach_tried
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = -a2_minus_length_25_minus_reach_tried * a2_minus_length_25_plus_reach_tried
+        one_plus_cos_q3_tried = -a2_minus_length_26_minus_reach_tried * a2_minus_length_26_plus_reach_tried
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = k.j6_offset_x * (goal_r32 * cos_q6_tried + goal_r31 * sin_q6_tried)
@@ -815,10 +846,10 @@ class ArrayPrograms(Programs):
             0.0,
         )
         slope_one_less_cos_q3_tried = (
-            a2_plus_length_25_minus_reach_tried - a2_plus_length_25_plus_reach_tried
+            a2_plus_length_26_minus_reach_tried - a2_plus_length_26_plus_reach_tried
         ) * slope_reach_tried
         slope_one_plus_cos_q3_tried = (
-            a2_minus_length_25_plus_reach_tried - a2_minus_length_25_minus_reach_tried
+            a2_minus_length_26_plus_reach_tried - a2_minus_length_26_minus_reach_tried
         ) * slope_reach_tried
         slope_divisor_of_cos_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
         holds = sum_q3_tried > 0.0
@@ -832,8 +863,8 @@ class ArrayPrograms(Programs):
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
         sin_swing_q3_tried = 2.0 * one_by_sum_q3_tried * root_of_sin_swing_q3_tried * sign_elbow_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_length_25 * cos_swing_q3_tried + k.d4_by_length_25 * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_length_25 * sin_swing_q3_tried - k.d4_by_length_25 * cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_length_26 * cos_swing_q3_tried + k.d4_by_length_26 * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_length_26 * sin_swing_q3_tried - k.d4_by_length_26 * cos_swing_q3_tried
         slope_cos_swing_q3_tried = (
             slope_one_plus_cos_q3_tried
             - slope_one_less_cos_q3_tried
@@ -853,8 +884,8 @@ class ArrayPrograms(Programs):
             2.0 * sign_elbow_tried * slope_root_of_sin_swing_q3_tried
             - slope_divisor_of_cos_q3_tried * sin_swing_q3_tried
         ) * one_by_sum_q3_tried
-        slope_cos_q3_tried = k.a3_by_length_25 * slope_cos_swing_q3_tried + k.d4_by_length_25 * slope_sin_swing_q3_tried
-        slope_sin_q3_tried = k.a3_by_length_25 * slope_sin_swing_q3_tried - k.d4_by_length_25 * slope_cos_swing_q3_tried
+        slope_cos_q3_tried = k.a3_by_length_26 * slope_cos_swing_q3_tried + k.d4_by_length_26 * slope_sin_swing_q3_tried
+        slope_sin_q3_tried = k.a3_by_length_26 * slope_sin_swing_q3_tried - k.d4_by_length_26 * slope_cos_swing_q3_tried
 
         def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
             cos_q2_tried = cos(reference_a2)
@@ -1007,9 +1038,9 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_tried * wrist_x_from_q1_tried + wrist_z_from_q1_tried * wrist_z_from_q1_tried
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_tried = (k.a2_plus_length_25 + reach_tried) * (k.a2_plus_length_25 - reach_tried)
+        one_less_cos_q3_tried = (k.a2_plus_length_26 + reach_tried) * (k.a2_plus_length_26 - reach_tried)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_tried = (reach_tried - k.a2_minus_length_25) * (k.a2_minus_length_25 + reach_tried)
+        one_plus_cos_q3_tried = (reach_tried - k.a2_minus_length_26) * (k.a2_minus_length_26 + reach_tried)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
@@ -1019,8 +1050,8 @@ class ArrayPrograms(Programs):
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
         # addition theorem: plus the angle of the direction from which the cosine is measured
-        cos_q3_tried = k.a3_by_length_25 * cos_swing_q3_tried + k.d4_by_length_25 * sin_swing_q3_tried
-        sin_q3_tried = k.a3_by_length_25 * sin_swing_q3_tried - k.d4_by_length_25 * cos_swing_q3_tried
+        cos_q3_tried = k.a3_by_length_26 * cos_swing_q3_tried + k.d4_by_length_26 * sin_swing_q3_tried
+        sin_q3_tried = k.a3_by_length_26 * sin_swing_q3_tried - k.d4_by_length_26 * cos_swing_q3_tried
 
         def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
             cos_q2_tried = cos(reference_a2)
@@ -1084,6 +1115,7 @@ class ArrayPrograms(Programs):
             goal_x,
             goal_y,
             goal_z,
+            is_newton,
             q1,
             q2,
             q3,
@@ -1139,10 +1171,10 @@ class ArrayPrograms(Programs):
         z = z_at_q6 + k.d6 * r33_at_q5
         error_3 = (goal_z - z) * k.one_by_machine_scale
         r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
         sin_q6 = sin(q6)
         cos_q6 = cos(q6)
         r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r32_at_q4 = cos_q23 * sin_q4
         r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
         r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
         r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
@@ -1174,6 +1206,7 @@ class ArrayPrograms(Programs):
             - goal_r13 * r23_at_q5
         )
         rate_1_1 = -k.one_by_machine_scale * y
+        rate_2_1 = k.one_by_machine_scale * x
         z_minus_d1 = z - k.d1
         cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
         rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
@@ -1188,6 +1221,20 @@ class ArrayPrograms(Programs):
         z_minus_z_at_q6 = z - z_at_q6
         y_minus_y_at_q6 = y - y_at_q6
         rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
+        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         # 3 where the rotations agree, -1 where they are half a turn apart
         agreement = (
             goal_r11 * r11_at_q6
@@ -1221,16 +1268,6 @@ class ArrayPrograms(Programs):
             + rate_1_5 * rate_1_5
             + rate_1_6 * rate_1_6
         )
-        rate_2_1 = k.one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
         product_1_2 = (
             rate_1_1 * rate_2_1
             + rate_1_2 * rate_2_2
@@ -1239,11 +1276,6 @@ class ArrayPrograms(Programs):
             + rate_1_5 * rate_2_5
             + rate_1_6 * rate_2_6
         )
-        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
         product_1_3 = (
             rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
         )
@@ -1301,45 +1333,167 @@ class ArrayPrograms(Programs):
         )
         product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
         product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-        # damped least squares: the shortest step that cancels the error
+        # damped least squares, or the step that cancels the error
         _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
             (
-                (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
-                (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
-                (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
-                (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
-                (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
-                (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
+                (
+                    select(is_newton, rate_1_1, product_1_1),
+                    select(is_newton, rate_1_2, product_1_2),
+                    select(is_newton, rate_1_3, product_1_3),
+                    select(is_newton, rate_1_4, product_1_4),
+                    select(is_newton, rate_1_5, product_1_5),
+                    select(is_newton, rate_1_6, product_1_6),
+                ),
+                (
+                    select(is_newton, rate_2_1, product_1_2),
+                    select(is_newton, rate_2_2, product_2_2),
+                    select(is_newton, rate_2_3, product_2_3),
+                    select(is_newton, rate_2_4, product_2_4),
+                    select(is_newton, rate_2_5, product_2_5),
+                    select(is_newton, rate_2_6, product_2_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_3),
+                    select(is_newton, rate_3_2, product_2_3),
+                    select(is_newton, rate_3_3, product_3_3),
+                    select(is_newton, rate_3_4, product_3_4),
+                    select(is_newton, rate_3_5, product_3_5),
+                    select(is_newton, rate_3_6, product_3_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_4),
+                    select(is_newton, -sin_q1, product_2_4),
+                    select(is_newton, -sin_q1, product_3_4),
+                    select(is_newton, r11_at_q23, product_4_4),
+                    select(is_newton, r12_at_q4, product_4_5),
+                    select(is_newton, r13_at_q5, product_4_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_5),
+                    select(is_newton, cos_q1, product_2_5),
+                    select(is_newton, cos_q1, product_3_5),
+                    select(is_newton, r21_at_q23, product_4_5),
+                    select(is_newton, r22_at_q4, product_5_5),
+                    select(is_newton, r23_at_q5, product_5_6),
+                ),
+                (
+                    select(is_newton, 1.0, product_1_6),
+                    select(is_newton, 0.0, product_2_6),
+                    select(is_newton, 0.0, product_3_6),
+                    select(is_newton, -sin_q23, product_4_6),
+                    select(is_newton, r32_at_q4, product_5_6),
+                    select(is_newton, r33_at_q5, product_6_6),
+                ),
             ),
             ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
         )
-        step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-        sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-        step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-        step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-        step_q4 = (
-            multiplier_1 * rate_1_4
-            + multiplier_2 * rate_2_4
-            + multiplier_3 * rate_3_4
-            + multiplier_4 * r11_at_q23
-            + multiplier_5 * r21_at_q23
-            - multiplier_6 * sin_q23
-        )
-        step_q5 = (
-            multiplier_1 * rate_1_5
-            + multiplier_2 * rate_2_5
-            + multiplier_3 * rate_3_5
-            + multiplier_4 * r12_at_q4
-            + multiplier_5 * r22_at_q4
-            + multiplier_6 * r32_at_q4
-        )
-        step_q6 = (
-            multiplier_1 * rate_1_6
-            + multiplier_2 * rate_2_6
-            + multiplier_3 * rate_3_6
-            + multiplier_4 * r13_at_q5
-            + multiplier_5 * r23_at_q5
-            + multiplier_6 * r33_at_q5
+
+        def elsewhere_step_q1(
+            cos_q1: Real,
+            multiplier_1: Real,
+            multiplier_2: Real,
+            multiplier_3: Real,
+            multiplier_4: Real,
+            multiplier_5: Real,
+            multiplier_6: Real,
+            r11_at_q23: Real,
+            r12_at_q4: Real,
+            r13_at_q5: Real,
+            r21_at_q23: Real,
+            r22_at_q4: Real,
+            r23_at_q5: Real,
+            r32_at_q4: Real,
+            r33_at_q5: Real,
+            rate_1_1: Real,
+            rate_1_2: Real,
+            rate_1_3: Real,
+            rate_1_4: Real,
+            rate_1_5: Real,
+            rate_1_6: Real,
+            rate_2_1: Real,
+            rate_2_2: Real,
+            rate_2_3: Real,
+            rate_2_4: Real,
+            rate_2_5: Real,
+            rate_2_6: Real,
+            rate_3_2: Real,
+            rate_3_3: Real,
+            rate_3_4: Real,
+            rate_3_5: Real,
+            rate_3_6: Real,
+            sin_q1: Real,
+            sin_q23: Real,
+        ) -> Reals:
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_q4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
+            )
+            step_q5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_q6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
+            )
+            return (step_q1, step_q2, step_q3, step_q4, step_q5, step_q6)
+
+        step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = elsewhere(
+            is_newton,
+            (multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6),
+            elsewhere_step_q1,
+            (
+                cos_q1,
+                multiplier_1,
+                multiplier_2,
+                multiplier_3,
+                multiplier_4,
+                multiplier_5,
+                multiplier_6,
+                r11_at_q23,
+                r12_at_q4,
+                r13_at_q5,
+                r21_at_q23,
+                r22_at_q4,
+                r23_at_q5,
+                r32_at_q4,
+                r33_at_q5,
+                rate_1_1,
+                rate_1_2,
+                rate_1_3,
+                rate_1_4,
+                rate_1_5,
+                rate_1_6,
+                rate_2_1,
+                rate_2_2,
+                rate_2_3,
+                rate_2_4,
+                rate_2_5,
+                rate_2_6,
+                rate_3_2,
+                rate_3_3,
+                rate_3_4,
+                rate_3_5,
+                rate_3_6,
+                sin_q1,
+                sin_q23,
+            ),
         )
         step_length = sqrt(
             step_q1 * step_q1
@@ -1507,7 +1661,8 @@ class ArrayPrograms(Programs):
             wave_sin_7,
             wave_sin_8,
         ) = given
-        sum_in_way_ends_2 = 360.0 * DEGREE - 1e-7
+        sum_in_end_of_way = 360.0 * DEGREE - 1e-7
+        value_in_end_of_way = select(onward, sum_in_end_of_way, 180.0 * DEGREE)
         # one step of the search
         (
             stage,
@@ -1520,6 +1675,7 @@ class ArrayPrograms(Programs):
             aside,
             error_before,
             steps_left,
+            is_newton,
             was_mirrored,
             nearest,
             passes_left,
@@ -1566,6 +1722,7 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
             0,
+            False,
             False,
             9.0,
             1500,
@@ -1666,7 +1823,6 @@ class ArrayPrograms(Programs):
             size = select(stage == 1, select(number_of_start > 12, length_2, length_1), absolute(remainder))
             is_less = size < least
             best_now = select(is_less, at, best)
-            least_now = select(is_less, size, least)
             way_now = select(
                 is_less, real_of_direction * remainder / select(absolute(rate) > 0.0, rate, 1e30), 0.25 * way
             )
@@ -1676,14 +1832,16 @@ class ArrayPrograms(Programs):
                 place,
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
+            settled_ = select(is_less & (absolute(at - newton_place) <= 1e-10), newton_place, best_now)
+            least_now = select(is_less, size, least)
             is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 5) | (absolute(at - newton_place) <= 1e-10))
             is_known = (
-                (absolute(best_now - settled_1) <= 1e-9)
-                | (absolute(best_now - settled_2) <= 1e-9)
-                | (absolute(best_now - settled_3) <= 1e-9)
-                | (absolute(best_now - settled_4) <= 1e-9)
-                | (absolute(best_now - settled_5) <= 1e-9)
-                | (absolute(best_now - settled_6) <= 1e-9)
+                (absolute(settled_ - settled_1) <= 1e-12)
+                | (absolute(settled_ - settled_2) <= 1e-12)
+                | (absolute(settled_ - settled_3) <= 1e-12)
+                | (absolute(settled_ - settled_4) <= 1e-12)
+                | (absolute(settled_ - settled_5) <= 1e-12)
+                | (absolute(settled_ - settled_6) <= 1e-12)
             )
             is_near = is_settled & (
                 ((opposite(is_known)) & (width > 1e-6))
@@ -1708,7 +1866,7 @@ class ArrayPrograms(Programs):
                     reference_a1,
                     reference_a2,
                     side,
-                    start + best_now * real_of_direction,
+                    start + real_of_direction * settled_,
                     wanted_elbow,
                     wanted_shoulder,
                 ),
@@ -1732,6 +1890,7 @@ class ArrayPrograms(Programs):
                     goal_x,
                     goal_y,
                     goal_z,
+                    is_newton,
                     q1,
                     q2,
                     q3,
@@ -1757,34 +1916,12 @@ class ArrayPrograms(Programs):
                 (False,),
             )
             (fits,) = found
-            sum_in_way_ends = 2e-7 + nearest
-            way_ends = (
-                (stage == 0)
-                & (width <= 0.0)
-                & (
-                    place
-                    >= select(
-                        onward,
-                        select(nearest < 360.0 * DEGREE, sum_in_way_ends, sum_in_way_ends_2),
-                        select(nearest < 180.0 * DEGREE, sum_in_way_ends, 180.0 * DEGREE),
-                    )
-                )
+            end_of_way = select(
+                nearest < value_in_end_of_way, nearest + 1e-7 * select(onward, -2.0, 2.0), value_in_end_of_way
             )
-            start_minus_q6 = start - q6
-            way_ahead = select(
-                onward,
-                1e-7
-                + 180.0 * DEGREE
-                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
-                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
-            )
-            is_better = (
-                fits
-                & meets_pose
-                & (way_ahead < nearest)
-                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_way_ends_2)))
-            )
-            nearest_now = select(is_better, way_ahead, nearest)
+            way_ends = (stage == 0) & (place >= end_of_way) & (width <= 0.0)
+            turns_back = way_ends & (opposite(onward)) & (direction > 0)
+            is_over = (passes_left <= 0) | (way_ends & (opposite(turns_back)))
             is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
@@ -1807,6 +1944,21 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 15, number_of_start_plus_one, 0),
                 ),
             )
+            start_minus_q6 = start - q6
+            way_ahead = select(
+                onward,
+                1e-7
+                + 180.0 * DEGREE
+                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
+                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
+            )
+            is_better = (
+                fits
+                & meets_pose
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = select(is_better, way_ahead, nearest)
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends & (opposite(is_nearest)) & (side > 0) & (is_nearest | (next_number == 0))
             part_is_done = start_ends & (opposite(side_ends)) & (is_nearest | (next_number == 0))
@@ -1826,12 +1978,6 @@ class ArrayPrograms(Programs):
                         0,
                     ),
                 ),
-            )
-            turns_back = way_ends & (opposite(onward)) & (direction > 0)
-            is_over = (
-                (passes_left <= 0)
-                | (way_ends & (opposite(turns_back)))
-                | (onward & (next_stage == 0) & (nearest_now <= 2e-7 + place_plus_width))
             )
             direction_next = select(turns_back, -1, direction)
             place_next = select(
@@ -1870,6 +2016,9 @@ class ArrayPrograms(Programs):
             aside_now = select(is_shortest, select(bend_now > 0.0, 1.7 * least_now / root(bend_now_2), 0.0), aside)
             error_before_next = select(is_near | mirrors, 9.0, error)
             steps_left_next = select(is_near | mirrors, 64, steps_left + select(error > 0.999 * error_before, -8, -1))
+            is_newton_next = (
+                (opposite(is_near)) & (opposite(is_newton)) & (opposite(mirrors)) & (error > 0.999 * error_before)
+            )
             was_mirrored_next = (opposite(is_near)) & (mirrors | was_mirrored)
             passes_left_next = passes_left - 1
             spread = 0.25 * width
@@ -1953,7 +2102,7 @@ class ArrayPrograms(Programs):
             last_next = select(begins | is_shortest, place_of_start, at)
             growth_before_next = select(begins | is_shortest, 0.0, growth)
             bend_next = select(begins | is_shortest, 0.0, bend_now)
-            settled_1_next = select(is_first, 9.0, select(is_near, best_now, settled_1))
+            settled_1_next = select(is_first, 9.0, select(is_near, settled_, settled_1))
             settled_2_next = select(is_first, 9.0, select(is_near, settled_1, settled_2))
             settled_3_next = select(is_first, 9.0, select(is_near, settled_2, settled_3))
             settled_4_next = select(is_first, 9.0, select(is_near, settled_3, settled_4))
@@ -1991,6 +2140,7 @@ class ArrayPrograms(Programs):
                 aside,
                 error_before,
                 steps_left,
+                is_newton,
                 was_mirrored,
                 nearest,
                 passes_left,
@@ -2039,6 +2189,7 @@ class ArrayPrograms(Programs):
                     aside,
                     error_before,
                     steps_left,
+                    is_newton,
                     was_mirrored,
                     nearest,
                     passes_left,
@@ -2086,6 +2237,7 @@ class ArrayPrograms(Programs):
                     aside_now,
                     error_before_next,
                     steps_left_next,
+                    is_newton_next,
                     was_mirrored_next,
                     nearest_now,
                     passes_left_next,
@@ -2253,7 +2405,7 @@ class ArrayPrograms(Programs):
         wrist_y_closed = y - d6_times_r23_at_q5
         sin_q3_closed = sin(q3)
         cos_q3_closed = cos(q3)
-        margin_elbow_closed = (k.a3 * sin_q3_closed + k.d4 * cos_q3_closed) * k.one_by_length_25
+        margin_elbow_closed = (k.a3 * sin_q3_closed + k.d4 * cos_q3_closed) * k.one_by_length_26
         branch_shoulder: Real
         branch_wrist: Real
         branch_crossing: Real
@@ -2308,9 +2460,9 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_closed * wrist_x_from_q1_closed + wrist_z_from_q1_closed * wrist_z_from_q1_closed
         )
         # law of cosines for q3 (x_from_q1² + z_from_q1²): 1 - cosine, times a scale
-        one_less_cos_q3_closed = (k.a2_plus_length_25 + reach_closed) * (k.a2_plus_length_25 - reach_closed)
+        one_less_cos_q3_closed = (k.a2_plus_length_26 + reach_closed) * (k.a2_plus_length_26 - reach_closed)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (reach_closed - k.a2_minus_length_25) * (k.a2_minus_length_25 + reach_closed)
+        one_plus_cos_q3_closed = (reach_closed - k.a2_minus_length_26) * (k.a2_minus_length_26 + reach_closed)
         # sum of both, twice the scale: cosine² + sine² is then 1
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
@@ -2365,7 +2517,7 @@ class ArrayPrograms(Programs):
                 False,
                 reference_a1,
                 reference_a2,
-                reference_a6,
+                atan2(sin(reference_a6), cos(reference_a6)),
                 sigma_crossing,
                 sigma_elbow,
                 sigma_shoulder,
@@ -2432,8 +2584,8 @@ class ArrayPrograms(Programs):
                 sin_q2_closed = sin(reference_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
-            arm_along_q2_closed = k.length_25 * sin_swing_q3_closed
-            arm_across_q2_closed = k.a2 + k.length_25 * cos_swing_q3_closed
+            arm_along_q2_closed = k.length_26 * sin_swing_q3_closed
+            arm_across_q2_closed = k.a2 + k.length_26 * cos_swing_q3_closed
             # rotation by q2 that takes the arm to its target point
             along_q2_closed = (
                 arm_across_q2_closed * wrist_z_from_q1_closed + arm_along_q2_closed * wrist_x_from_q1_closed
@@ -2454,8 +2606,8 @@ class ArrayPrograms(Programs):
             )
             q2 = atan2(sin_q2_closed, cos_q2_closed)
             # addition theorem: plus the angle of the direction from which the cosine is measured
-            cos_q3_closed = k.a3_by_length_25 * cos_swing_q3_closed + k.d4_by_length_25 * sin_swing_q3_closed
-            sin_q3_closed = k.a3_by_length_25 * sin_swing_q3_closed - k.d4_by_length_25 * cos_swing_q3_closed
+            cos_q3_closed = k.a3_by_length_26 * cos_swing_q3_closed + k.d4_by_length_26 * sin_swing_q3_closed
+            sin_q3_closed = k.a3_by_length_26 * sin_swing_q3_closed - k.d4_by_length_26 * cos_swing_q3_closed
             q3 = atan2(sin_q3_closed, cos_q3_closed)
             r13_from_q1_closed = r13 * cos_q1_closed + r23 * sin_q1_closed
             sin_q23_closed = cos_q2_closed * sin_q3_closed + cos_q3_closed * sin_q2_closed
