@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from prove.klipper import softkin_written
-from prove.klipper.path import Way
-from prove.klipper.steps import Compared, compared, decoded
+from prove.klipper.path import MADE, Way
+from prove.klipper.steps import Compared, Steps, compared, decoded
 
 MICROSTEPS, FULL_STEPS, GEAR, LEAD = 16, 200, 10, 40.0
 _MODULES = "cffi, greenlet, jinja2, serial, can"
@@ -56,18 +57,36 @@ def run(module: str, way: Way, klipper: Path, python: str, written: Path) -> Com
     work = klipper.parent / module
     work.mkdir(exist_ok=True)
     (work / "printer.cfg").write_text(_configured(module, way))
-    (work / "program.gcode").write_text(f"G28\nG90\n{way.program}\nM400\n")
+    program = "\n".join(part.program for part in way.parts)
+    (work / "program.gcode").write_text(f"G90\n{program}\n")
     dictionary = klipper / "out" / "klipper.dict"
     command = [python, str(klipper / "klippy" / "klippy.py"), "printer.cfg", "-i", "program.gcode"]
     try:
         _told([*command, "-o", "steps.serial", "-v", "-d", str(dictionary), "-l", "klippy.log"], work)
-    except CannotRun:
+    except CannotRun as reason:
         last = (work / "klippy.log").read_text(errors="replace").splitlines()[-6:]
-        return Compared(0, np.inf, "Klipper refuses: " + " / ".join(last))
+        return Compared(0, np.inf, f"Klipper ends: {reason} / {' / '.join(last)}")
     text = _told([python, str(klipper / "klippy" / "parsedump.py"), str(dictionary), "steps.serial"], work)
     frequency = float(json.loads(dictionary.read_text())["config"]["CLOCK_FREQ"])
     steps = decoded(text, {_pin(axis): axis for axis in range(len(way.home))}, frequency)
-    return compared(steps, (way.axes - np.array(way.home)) / _distances(way))
+    return _each(steps, _ends(way, (work / "klippy.log").read_text(errors="replace")), way)
+
+
+def _ends(way: Way, log: str) -> list[float]:
+    """The times (s) at which the parts end."""
+    times = [float(time) for time in re.findall(softkin_written.UNTIL.format(r"(\S+)"), log)]
+    return [times[count - 1] for count in np.cumsum([part.program.count(MADE) for part in way.parts])]
+
+
+def _each(steps: list[Steps], ends: list[float], way: Way) -> Compared:
+    """Each part with the steps until it ends; all that follow the last but one are of the last."""
+    found, begin = [], 0.0
+    for part, end in zip(way.parts, [*ends[:-1], np.inf], strict=True):
+        ideal = (part.axes - np.array(way.home)) / _distances(way)
+        found.append(compared([one.between(begin, end) for one in steps], ideal))
+        begin = end
+    faults = [f"part {number}: {one.fault}" for number, one in enumerate(found, 1) if one.fault]
+    return Compared(sum(one.count for one in found), max(one.farthest for one in found), "; ".join(faults))
 
 
 def _distances(way: Way) -> np.ndarray:

@@ -21,6 +21,11 @@ class Steps:
     times: Array
     directions: Array
 
+    def between(self, begin: float, end: float) -> Steps:
+        """Those in a time."""
+        is_inside = (self.times >= begin) & (self.times < end)
+        return Steps(self.times[is_inside], self.directions[is_inside])
+
 
 def decoded(text: str, pins: dict[str, int], frequency: float) -> list[Steps]:
     """The steps of every axis. text: Klipper's messages; pins: the axis of each step pin."""

@@ -15,7 +15,7 @@ from typing import Any
 
 from derive.emit.around_c.package import klipper
 from derive.emit.c.package import module_name
-from prove.klipper.path import Way
+from prove.klipper.path import Way, way_of
 from tests.mechanisms import kinematics_of, named
 
 STUB = Path(__file__).parent / "stub"
@@ -43,6 +43,7 @@ class Stepper:
 
     def __init__(self, config: Any, units_in_radians: bool = False) -> None:
         self.name, self.turns, self.solver, self.queue = config.get_name(), units_in_radians, 0, None
+        self.position = 0.0
 
     def get_name(self) -> str:
         return str(self.name)
@@ -57,8 +58,7 @@ class Stepper:
         self.queue = queue
 
     def set_position(self, position: Sequence[float]) -> None:
-        if self.solver:
-            self.at(position)
+        self.position = self.at(position) if self.solver else position["xyz".index(self.plain[1][0].decode())]
 
     def at(self, position: Sequence[float]) -> float:
         return self.along(position, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
@@ -79,6 +79,9 @@ class Config:
 
     def get_name(self) -> str:
         return self.name
+
+    def get_printer(self) -> Any:
+        return SimpleNamespace(command_error=Refused, send_event=lambda name, *given: EVENTS.append(name))
 
     def getsection(self, name: str) -> Config:
         if name not in self.sections:
@@ -107,6 +110,8 @@ class Config:
         return default[0]
 
 
+EVENTS: list[str] = []
+"""What was told to all parts of Klipper."""
 TOOLHEAD = SimpleNamespace(get_trapq=lambda: "queue", Coord=tuple)
 
 
@@ -152,3 +157,30 @@ def move(start: Sequence[float], end: Sequence[float]) -> Any:
         start_pos=start, end_pos=end, axes_d=apart, move_d=length,
         move_error=lambda said="Move out of range": Refused(said),
     )  # fmt: skip
+
+
+@cache
+def way(name: str) -> Way:
+    """A way of a machine."""
+    return way_of(named(name))
+
+
+class Homing:
+    """A G28."""
+
+    def __init__(self, kinematics: Any) -> None:
+        self.kinematics = kinematics
+
+    def set_axes(self, axes: Sequence[int]) -> None:
+        assert axes == [0, 1, 2]
+
+    def set_homed_position(self, position: Sequence[float]) -> None:
+        self.kinematics.set_position(position, "")
+
+
+def made(name: str, **further: Any) -> Any:
+    """The kinematics of a machine, homed at the begin of its way."""
+    sections = sections_of(way(name))
+    kinematics = loaded(name).load_kinematics(TOOLHEAD, Config({**sections, "printer": sections["printer"] | further}))
+    kinematics.home(Homing(kinematics))
+    return kinematics

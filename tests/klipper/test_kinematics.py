@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import degrees
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,8 +11,7 @@ import pytest
 from derive.command.line import main
 from derive.description.catalogue import MECHANISMS
 from derive.emit.around_c.package import klipper, only_positions
-from prove.klipper.path import Way, way_of
-from tests.klipper.pretended import TOOLHEAD, Config, Refused, loaded, move, sections_of, solver
+from tests.klipper.pretended import TOOLHEAD, Config, Homing, Refused, loaded, made, move, sections_of, solver, way
 from tests.mechanisms import catalogue, kinematics_of, named
 
 pytestmark = pytest.mark.broad
@@ -23,31 +20,12 @@ NAMES = [m.name for _, m in catalogue() if only_positions(m)]
 POINTS = 60
 
 
-@cache
-def way(name: str) -> Way:
-    """A way of a machine."""
-    return way_of(named(name))
-
-
-def made(name: str, **further: Any) -> Any:
-    """Its kinematics, homed at the begin of the way."""
-    sections = sections_of(way(name))
-    kinematics = loaded(name).load_kinematics(TOOLHEAD, Config({**sections, "printer": sections["printer"] | further}))
-
-    def at_home(position: list[float]) -> None:
-        kinematics.set_position(position, "")
-
-    kinematics.home(
-        type("Homing", (), {"set_axes": lambda self, axes: None, "set_homed_position": staticmethod(at_home)})()
-    )
-    return kinematics
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_steppers_stand_where_python_says(name: str) -> None:
     """Along lines and arcs, in the units of the steppers; the position at these values is the one that was asked."""
     kinematics, one = made(name), way(name)
-    rows = one.axes[:: len(one.axes) // POINTS]
+    axes = one.parts[0].axes
+    rows = axes[:: len(axes) // POINTS]
     points = np.array(one.robot.forward_batch(rows)[0])
     steppers = kinematics.get_steppers()
     turns = [axis.unit == "deg" for axis in one.robot.AXES]
@@ -92,13 +70,15 @@ def test_a_line_through_what_is_out_of_reach_is_refused() -> None:
 
 
 def test_a_plane_has_a_stepper_for_z() -> None:
-    """A letter that a machine does not have is an ordinary stepper if there is a section for it; else it stays."""
+    """A letter that a machine does not have is a plain stepper if there is a section for it; else it stays."""
     sections = sections_of(way("Kin_Polar"))
     alone = made("Kin_Polar")
     start = list(alone._home)
-    with pytest.raises(Refused, match="Move out of range"):
+    with pytest.raises(Refused, match="does not move in Z"):
         alone.check_move(move(start, [*start[:2], start[2] + 1.0]))
-    both = loaded("Kin_Polar").load_kinematics(TOOLHEAD, Config({**sections, "stepper_z": {}}))
+    both = loaded("Kin_Polar").load_kinematics(TOOLHEAD, Config({**sections, "stepper_z": {"position_home": 3.0}}))
+    both.home(Homing(both))
+    assert both.get_steppers()[2].position == 3.0 and both._home[2] == 3.0
     *own, z = both.get_steppers()
     assert len(own) == 2 and z.plain == ("cartesian_stepper_alloc", (b"z",))
     found = {s.get_name(): s.at([100.0, 0.0, 7.0]) for s in own} | {"stepper_z": 7.0}

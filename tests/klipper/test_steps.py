@@ -56,6 +56,12 @@ queue_step oid=7 interval=50 count=1 add=0
     assert one.times == pytest.approx([10.0, 21.0, 33.0, 105.0]) and one.directions.tolist() == [-1, -1, -1, 1]
 
 
+def test_steps_of_a_part_are_those_of_its_time() -> None:
+    """The first of the next part belongs to that."""
+    part = Steps(np.array([1.0, 2.0, 3.0, 4.0]), np.array([1.0, -1.0, 1.0, 1.0])).between(2.0, 4.0)
+    assert part.times.tolist() == [2.0, 3.0] and part.directions.tolist() == [-1.0, 1.0]
+
+
 @pytest.mark.parametrize(("given", "said"), [([], "no checkout of Klipper is given"), (["/nowhere"], "is no checkout")])
 def test_without_a_checkout_it_says_so(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
     """In a sentence, and with a status of its own."""

@@ -14,8 +14,7 @@ import stepper
 
 Machine = namedtuple("Machine", "module letters axes branches parameters")
 _FOLDER = os.path.dirname(os.path.abspath(__file__))
-_SPACING = 0.5  # of the points at which a line is checked, mm
-_MOST_POINTS = 2000
+_SPACING = 0.5  # of the points at which a line is tested, at most, mm
 _Three = ctypes.c_double * 3
 
 
@@ -23,7 +22,7 @@ class Kinematics:
     """What Klipper's toolhead calls."""
 
     def __init__(self, toolhead, config, machine):
-        self._machine = machine
+        self._machine, self._printer = machine, config.get_printer()
         sections = [config.getsection("stepper_" + name.lower()) for name, _ in machine.axes]
         self._axes = [
             stepper.PrinterStepper(sections[i], units_in_radians=turns) for i, (_, turns) in enumerate(machine.axes)
@@ -40,8 +39,10 @@ class Kinematics:
         self._plain = {}
         for letter in "xyz":
             if letter not in machine.letters and config.has_section("stepper_" + letter):
-                self._plain[letter] = one = stepper.PrinterStepper(config.getsection("stepper_" + letter))
+                section = config.getsection("stepper_" + letter)
+                self._plain[letter] = one = stepper.PrinterStepper(section)
                 one.setup_itersolve("cartesian_stepper_alloc", letter.encode())
+                self._home["xyz".index(letter)] = section.getfloat("position_home", 0.0)
         for one in self.get_steppers():
             one.set_trapq(toolhead.get_trapq())
         self._lowest = config.getfloatlist("axis_minimum", (-1e4,) * 3, count=3)
@@ -77,18 +78,22 @@ class Kinematics:
 
     def calc_position(self, stepper_positions):
         values = [stepper_positions[one.get_name()] / self._units[i] for i, one in enumerate(self._axes)]
-        found = _Three()
+        found = _Three(*[math.nan] * 3)
         self._library.softkin_klipper_position(self._made, (ctypes.c_double * len(values))(*values), found)
         for letter, one in self._plain.items():
             found["xyz".index(letter)] = stepper_positions[one.get_name()]
         return list(found)
 
     def set_position(self, newpos, homing_axes):
-        self._reaches(newpos, newpos, 1)  # turns of later lines are near this position
-        for one in self.get_steppers():
-            one.set_position(newpos)
+        reason = self._reaches(newpos, newpos, 1)
+        if reason:
+            # Steppers cannot stand there: from here a move would make all their steps at once.
+            self._homed = ""
+            raise self._printer.command_error(reason)
         for address in self._solvers:
             self._library.softkin_klipper_keep(address)
+        for one in self.get_steppers():
+            one.set_position(newpos)
         self._homed = "".join(a for a in "xyz" if a in self._homed or a in homing_axes)
 
     def clear_homing_state(self, clear_axes):
@@ -96,20 +101,24 @@ class Kinematics:
             self._homed = ""
 
     def home(self, homing_state):
-        # Nothing moves: the machine stands at the positions position_home of its axes.
+        # Nothing moves: the machine stands at the positions position_home of its axes, whichever letters are asked for.
+        # Klipper's events tell others, as G92, which ends there.
         homing_state.set_axes([0, 1, 2])
+        self._printer.send_event("homing:home_rails_begin", homing_state, [])
+        self._library.softkin_klipper_home(self._made)
         homing_state.set_homed_position(self._home)
         self._homed = "xyz"
+        self._printer.send_event("homing:home_rails_end", homing_state, [])
 
     def check_move(self, move):
         if len(self._homed) < 3:
             raise move.move_error("Must home first")
         for i, letter in enumerate("xyz"):
-            is_still = letter not in self._machine.letters and letter not in self._plain and move.axes_d[i]
-            if is_still or not self._lowest[i] <= move.end_pos[i] <= self._highest[i]:
+            if move.axes_d[i] and letter not in self._machine.letters and letter not in self._plain:
+                raise move.move_error(f"The machine does not move in {letter.upper()}")
+            if not self._lowest[i] <= move.end_pos[i] <= self._highest[i]:
                 raise move.move_error()
-        points = max(1, min(_MOST_POINTS, int(move.move_d / _SPACING)))
-        reason = self._reaches(move.start_pos, move.end_pos, points)
+        reason = self._reaches(move.start_pos, move.end_pos, math.ceil(move.move_d / _SPACING))
         if reason:
             raise move.move_error(reason)
 
@@ -124,12 +133,16 @@ class Kinematics:
 
 
 def _loaded(module, config):
-    """The C of the machine, compiled if its sources are newer."""
+    """The C of the machine, compiled if its sources are newer, or Klipper's headers: their structs may change."""
     library = os.path.join(_FOLDER, f"softkin_{module}.so")
     sources = [os.path.join(_FOLDER, name) for name in ("softkin_klipper.c", "softkin.c", module + ".c")]
-    if not os.path.exists(library) or max(map(os.path.getmtime, sources)) > os.path.getmtime(library):
+    headers = [os.path.join(_FOLDER, name) for name in ("softkin.h", "softkin_constants.h", module + ".h")]
+    theirs = os.path.dirname(chelper.__file__)
+    headers += [os.path.join(theirs, name) for name in sorted(os.listdir(theirs)) if name.endswith(".h")]
+    newest = max(map(os.path.getmtime, sources + headers))
+    if not os.path.exists(library) or newest > os.path.getmtime(library):
         command = ["gcc", "-std=gnu99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-o", library + ".new"]
-        command += ["-I", os.path.dirname(chelper.__file__), "-I", _FOLDER, "-include", module + ".h"]
+        command += ["-I", theirs, "-I", _FOLDER, "-include", module + ".h"]
         command += [f"-DSOFTKIN_MECHANISM={module}_mechanism", *sources, "-lm"]
         done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
         if done.returncode:
@@ -141,6 +154,7 @@ def _loaded(module, config):
         ("new", address, [address, address, address, address, text, number]),
         ("stepper", address, [address, number, ctypes.c_double]),
         ("keep", None, [address]),
+        ("home", None, [address]),
         ("reaches", ctypes.c_bool, [address, address, address, number, text, number]),
         ("position", ctypes.c_bool, [address, address, address]),
     ):

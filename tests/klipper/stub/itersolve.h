@@ -8,6 +8,5 @@ struct stepper_kinematics {
   int active_flags;
   double commanded_pos;
   double (*calc_position_cb)(struct stepper_kinematics *sk, struct move *m, double move_time);
-  void (*post_cb)(struct stepper_kinematics *sk);
 };
 #endif
