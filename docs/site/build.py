@@ -25,7 +25,19 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 BLOCKS = Path("generated/st")
 GUIDES = {
-    "Use a robot": ("PYTHON", "GALLERY", "CALIBRATION", "CODESYS", "LINUXCNC", "C", "JAVASCRIPT", "FMI"),
+    "Use a robot": (
+        "PYTHON",
+        "GALLERY",
+        "CALIBRATION",
+        "CODESYS",
+        "LINUXCNC",
+        "C",
+        "JAVASCRIPT",
+        "FMI",
+        "BR",
+        "KLIPPER",
+        "PACDRIVE",
+    ),
     "Describe your own": ("OWN_MACHINE", "IMPORT", "VIEWER", "LIVE"),
     "Read on": ("MECHANISMS", "PROOF", "SPEED", "COMPARE", "COMPILER"),
 }
@@ -42,6 +54,8 @@ def build(folder: Path) -> int:
     shutil.copytree(ROOT / BLOCKS, pages / BLOCKS)
     shutil.copytree(ROOT / "generated/python/softkin", pages / "generated/python/softkin")
     shutil.copy(ROOT / "ARCHITECTURE.md", pages)
+    for guide in (pages / "docs").glob("*.md"):  # the README is the first page
+        guide.write_text(guide.read_text(encoding="utf-8").replace("](../README.md", "](../index.md"), encoding="utf-8")
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     machines = {mechanism.name: mechanism for _, mechanism in catalogue()}
     texts = {

@@ -156,7 +156,9 @@ def test_parameters_with_the_names_of_what_their_own_derivation_finds(name: str)
         names = rng.choice(derived, len(mechanism.parameters), replace=False).tolist()
         odd = build(validate(called_otherwise(mechanism, names)))
         assert [p.given_name for p in odd.parameters[: len(names)]] == names
-        assert [len(p.body) for p in odd.programs] == [len(p.body) for p in usual.programs]
+        for one, other in zip(odd.programs, usual.programs, strict=True):
+            # names order the terms of a sum, and with them what rates have in common
+            assert abs(len(one.body) - len(other.body)) <= (2 if one.name == "bias" else 0), one.name
 
 
 def called_otherwise(mechanism: Mechanism, names: Sequence[str]) -> Mechanism:

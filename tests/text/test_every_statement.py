@@ -132,6 +132,8 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_inherited_methods.test_every_block_knows_its_orientation(serial_pairs_of(mechanism))
             test_inherited_methods.test_a_further_method_answers_or_is_impossible(serial_pairs_of(mechanism))
             compare_all(serial_pairs_of(mechanism)[0], serial_pairs_of(mechanism)[0].regular[0])
+        directed = serial_pairs_of(five_axes)[1]
+        provoke(directed, directed.regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
         for size in range(1, 7):
             test_shared_matrices.test_solve(size)

@@ -37,7 +37,10 @@ NO_ROTATIONS: tuple[Rows, ...] = (
 
 MOTIONS = {"AxisVelocities": "aVelocities", "AxisAccelerations": "aAccelerations"}
 """The methods that write zeros where they refuse, with the argument to which they do."""
-FORWARD_METHODS = ("AxesToCartesian", "AxesToOrientation", "Jacobian", "IsSingularity", "AxesToConfiguration_Offset")
+FORWARD_METHODS = (
+    "AxesToCartesian", "AxesToOrientation", "Jacobian", "IsSingularity", "AxesToConfiguration_Offset",
+    "AxisAccelerations",
+)  # fmt: skip
 
 
 def real_inputs(call: Call) -> Iterator[tuple[str, values.Path]]:
