@@ -21,6 +21,12 @@ def named(name: str) -> Mechanism:
     return next(mechanism for _, mechanism in catalogue() if mechanism.name == name)
 
 
+def has_struts(mechanism: Mechanism) -> bool:
+    """Whether the lengths of its rods are joints: any place is in reach."""
+    lengths = {s for rod in mechanism.rods for s in rod.length.free_symbols}
+    return bool(lengths & {j.symbol for j in mechanism.joints})
+
+
 @cache
 def kinematics_of(mechanism: Mechanism) -> Kinematics:
     """All programs of a mechanism."""

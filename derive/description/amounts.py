@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Role
+from derive.description.mechanism import Kind, Mechanism, Role
 from derive.geometry.frames import LETTERS, Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 
@@ -97,7 +97,7 @@ def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
 def _wrong_shift(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
     """A term that is a product of powers of lengths, such as an area, and no length."""
     lengths = {p.symbol for p in mechanism.parameters if p.role in _LENGTHS}
-    lengths |= {j.symbol for j in mechanism.joints if not j.is_angle}
+    lengths |= {j.symbol for j in mechanism.joints if not j.is_angle and j.kind is not Kind.DRIVING}
     for term in sp.Add.make_args(sp.expand(factor.amount)):
         powers = [part.as_base_exp() for part in sp.Mul.make_args(term) if part.free_symbols & lengths]
         degree = sp.Add(*[exponent for _, exponent in powers])

@@ -206,6 +206,11 @@ def helical(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
     return Joint(_joint_symbol(name), name, Kind.HELICAL, meaning, multi_turn=True, **details)
 
 
+def driving(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
+    """A turning motor that moves lengths alone: declared Linear, values in degrees."""
+    return Joint(_joint_symbol(name), name, Kind.DRIVING, meaning, **details)
+
+
 def linear(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
     """A linear joint."""
     return Joint(_joint_symbol(name), name, Kind.LINEAR, meaning, **details)

@@ -36,7 +36,7 @@ from derive.description.dimensions import (
 from derive.description.drives import Drive, driven, with_loops
 from derive.description.errors import DescriptionError
 from derive.description.fields import as_stated, expressions
-from derive.description.joints import Interval, Joint, Kind, arc, helical, linear, rotary
+from derive.description.joints import Interval, Joint, Kind, arc, driving, helical, linear, rotary
 from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
 from derive.geometry.frames import Chain
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
@@ -49,9 +49,9 @@ __all__ = [
     "COORDINATE_NAMES", "ROTATION", "ROTATION_ENTRIES", "TURN", "Assembly", "Bound", "Branch", "Constraint",
     "DescriptionError", "Drive", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod",
     "Search", "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch",
-    "crossing", "coordinate", "coupling", "distance", "driven", "flag", "gear", "guide", "helical", "length", "limited",
-    "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign", "signed_length",
-    "transmission",
+    "crossing", "coordinate", "coupling", "distance", "driven", "driving", "flag", "gear", "guide", "helical", "length",
+    "limited", "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign",
+    "signed_length", "transmission",
 ]  # fmt: skip
 
 

@@ -39,7 +39,7 @@ class Closure:
         self.mechanism = mechanism
         self.constants = [float(parameters[p.name]) for p in mechanism.parameters]
         self.offsets = np.array([parameters[j.offset.name] for j in mechanism.joints], dtype=float)
-        self.units = np.array([ONE_DEGREE if j.axis_is_angle else 1.0 for j in mechanism.joints])
+        self.units = np.array([ONE_DEGREE if j.in_degrees else 1.0 for j in mechanism.joints])
         self.angles = np.array([j.axis_is_angle for j in mechanism.joints])
         self.turning = np.array([j.is_angle for j in mechanism.joints])
         """Which joints are angles: a cylinder, whose axis is a length, may move one."""

@@ -41,7 +41,7 @@ SPECIAL: dict[str, dict[str, Mapping[str, float]]] = {
 SPECIAL["Kin_Pos_RRR"] = {
     name: {k: v for k, v in given.items() if k != "d6"} for name, given in SPECIAL["Kin_ArticulatedRobot_6DOF"].items()
 }
-APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY"}
+APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY", "Softkin_ThreeCables", "Softkin_Tripod_Struts"}
 """Loops whose factors vanish together only where nothing controls the plate."""
 CANDIDATES = tuple(m for _, m in catalogue() if not (m.is_platform or m.is_orientation or m.drives))
 SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z", "Softkin_Transmit"}

@@ -264,6 +264,11 @@ def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
 
 
+def _mantle(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The part turns from X to Y: its mantle passes the tool the other way."""
+    return q[0] - p["radius"], -p["radius"] * q[1], q[2], 0 * q[1]
+
+
 def _skew(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     angle = np.radians(p["skew"])
     return q[0] + q[1] * np.cos(angle), q[1] * np.sin(angle), q[2], 0 * q[0]
@@ -286,6 +291,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_SkewGantry3": _skew,
     "Softkin_TableTable_AC": _table_table,
     "Softkin_TableTable_BC": _table_table_b,
+    "Softkin_Tracyl": _mantle,
     "Softkin_Transmit": _face,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,

@@ -247,7 +247,8 @@ def _nominal(mechanism: Mechanism) -> dict[str, float]:
 def _unequal(mechanism: Mechanism, rng: Generator) -> dict[str, float]:
     """Dimensions of which no two are alike, and offsets."""
     given: dict[str, float] = {}
-    smallest = min(p.nominal for p in mechanism.parameters if p.role is Role.LENGTH)
+    lengths = [p.nominal for p in mechanism.parameters if p.role is Role.LENGTH]
+    smallest = min(lengths or (abs(p.nominal) for p in mechanism.parameters if p.nominal))  # or coordinates alone
     for p in mechanism.parameters:
         if p.role is Role.FLAG:
             given[p.name] = float(rng.integers(2))

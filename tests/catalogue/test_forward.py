@@ -41,7 +41,7 @@ def test_forward_is_what_the_literature_prints(name: str) -> None:
     (mechanism,) = (m for m in MECHANISMS if m.name == name)
     for machine in machines_of(mechanism):
         axes = machine.draw(300, np.random.default_rng(4))
-        units = [ONE_DEGREE if j.is_angle else 1.0 for j in mechanism.joints]
+        units = [ONE_DEGREE if j.in_degrees else 1.0 for j in mechanism.joints]
         offsets = [machine.robot.parameters[f"offset_{j.key}"] for j in mechanism.joints]
         *position, turn = FORMULAS[name](machine.robot.parameters, ((axes - offsets) * units).T)
         positions, rotations, _, _ = machine.robot.forward_batch(axes)

@@ -9,6 +9,7 @@ from softkin import KinematicsError, Status
 
 from derive.description.mechanism import Mechanism, Role
 from tests.catalogue.machines import LENGTHS, Machine
+from tests.mechanisms import has_struts
 
 
 def refused(machine: Machine, name: str, **given: object) -> None:
@@ -93,9 +94,8 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         usual |= dict.fromkeys(("min_type2_margin", "warning_distance"), 1e-3)
         swing = 45.0 if parameter.name == "max_angle_ball_joint" else None  # as CODESYS has it
         by_role = {**dict.fromkeys(LENGTHS), Role.ANGLE: swing, Role.SIGN: 1.0}
-        if (
-            mechanism.is_platform or mechanism.drives
-        ) and own is not None:  # what must be given, and what need not, is said one by one
+        one_by_one = mechanism.is_platform or mechanism.drives or has_struts(mechanism)
+        if one_by_one and own is not None:  # what must be given, and what need not, is said one by one
             by_role |= dict.fromkeys((Role.DISTANCE, Role.ANGLE), own.default)
         assert parameter.default == (usual.get(parameter.name, 0.0) if own is None else by_role.get(own.role, 0.0))
 

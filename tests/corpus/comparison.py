@@ -84,7 +84,7 @@ def _solution(one: Robot, place: str, old: Answer, new: Answer, share: float) ->
 
 def axes_differ(one: Robot, place: str, old: list[float], new: list[float], margin: float) -> Iterator[str]:
     """Whether axes are others: by their distance, near a singularity by their frames."""
-    scales = [180.0 if angle else one.reach + abs(a) for angle, a in zip(one.is_angle, old, strict=True)]
+    scales = [(180.0 if angle else one.reach) + abs(a) for angle, a in zip(one.is_angle, old, strict=True)]
     allowed = AXES / max(margin, SINGULAR)
     if all(abs(a - b) <= allowed * scale for a, b, scale in zip(old, new, scales, strict=True)):
         return

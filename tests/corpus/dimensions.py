@@ -40,6 +40,13 @@ _HEXAGLIDE |= {f"rod_length_{i}": 620.0 + 3.0 * i for i in range(1, 7)} | {"home
 _HEXAGLIDE |= {f"rail_{i}_z": 2.0 * i for i in range(1, 7)}
 _HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
 
+
+def _anchors(what: str, *places: tuple[float, float, float]) -> dict[str, float]:
+    """The fixed ends of struts or cables."""
+    points = enumerate((zip("xyz", place, strict=True) for place in places), 1)
+    return {f"{what}_{k}_{letter}": value for k, point in points for letter, value in point}
+
+
 DIMENSIONS: dict[str, dict[str, float]] = {
     "Kin_5Axes": {"tool_length": 90.0},
     "Softkin_HeadHead_CA": {"fork_offset": 20.0, "head_offset": 12.0, "pivot_length": 250.0},
@@ -75,7 +82,12 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_SkewGantry3": {"skew": 78.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
+    "Softkin_ThreeCables": _anchors(
+        "cable", (0.0, 2050.0, 2500.0), (-1800.0, -950.0, 2450.0), (1750.0, -1000.0, 2600.0)
+    ),
+    "Softkin_Tracyl": {"radius": 45.0},
     "Softkin_Transmit": {},
+    "Softkin_Tripod_Struts": _anchors("strut", (10.0, 300.0, 5.0), (-250.0, -160.0, 0.0), (260.0, -150.0, -8.0)),
     "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
         "d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "j6_offset_x": 60.0, "d6": 85.0,
     },

@@ -11,13 +11,14 @@ from softkin import Diagnosis, KinematicsError, Status
 from derive.description.mechanism import Mechanism, Rod, X, Y, Z
 from derive.ir.constants import DEGREE
 from tests.catalogue.references import held_at
-from tests.mechanisms import catalogue
+from tests.mechanisms import catalogue, has_struts
 from tests.text.samples import NO_TURN
 
 LEGS = tuple(
     m
     for _, m in catalogue()
-    if m.rods and not m.home and all(sum(r.equation.has(j.symbol) for j in m.joints) == 1 for r in m.rods)
+    if m.rods and not m.home and not has_struts(m)
+    if all(sum(r.equation.has(j.symbol) for j in m.joints) == 1 for r in m.rods)
 )
 """Loops whose every rod hangs on one joint: what is missing of the rod is missing whatever the other legs do."""
 ARMS = {

@@ -21,7 +21,6 @@ from derive.geometry.frames import Motion
 from derive.ir.constants import (
     BOUNDARY,
     CONVERGED,
-    DEGREE,
     LEAST_DAMPING,
     LONGEST_STEP,
     NEARLY,
@@ -301,7 +300,7 @@ def _next(machine: Machine, joint: Joint, start: sp.Expr) -> sp.Expr:
     """The axis value behind a step: the start of the next attempt; if the pose is met on another branch, the closed
     form with what is known there, or the mirror image; else the step.
     """
-    unit = 1 / DEGREE if joint.axis_is_angle else SCALE
+    unit = (1 if joint.axis_is_angle else SCALE) / joint.unit
     moved = tried(joint) + real("shrinking") * real(f"step_{joint.key}") * unit
     beside = [flag(f"beside_{a.branch.name}") for a in machine.assignments if a.determinant.step == joint.symbol]
     across = 2 * start - tried(joint)

@@ -10,7 +10,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Joint
-from derive.ir.constants import DEGREE, NEARLY
+from derive.ir.constants import NEARLY
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Call, Iterate, Let, Output, Program, Solve, Statement, rewritten
@@ -81,7 +81,7 @@ def approached(machine: Machine, lean: Machine, branch: Program, search: Program
 
 def _stepped(machine: Machine, joint: Joint) -> sp.Expr:
     """The axis value behind a step."""
-    unit = 1 / DEGREE if joint.is_angle else SCALE
+    unit = (1 if joint.is_angle else SCALE) / joint.unit
     return tried(joint) + real(f"step_{joint.key}") * unit if joint in machine.inverse.moving else tried(joint)
 
 

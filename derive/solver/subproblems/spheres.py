@@ -90,7 +90,7 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
     rods = sp.Matrix.hstack(
         *(_named(statements, sp.Matrix(unknowns) - c, f"rod_{k}", unknowns) for k, c in enumerate(centres, 1))
     )
-    scale = sp.Mul(*[_length(s.radius_square) for s in found])
+    scale = sp.Mul(*[_divisor(problem, _length(s.radius_square)) for s in found])
     determinant = StepDeterminant(_ASSEMBLY, rods.det(), scale)
     return Binding("spheres", unknowns, tuple(statements), determinant)
 
@@ -178,3 +178,8 @@ def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.
 
 def _length(square: sp.Expr) -> sp.Expr:
     return sp.sqrt(factored(square))
+
+
+def _divisor(problem: Problem, length: sp.Expr) -> sp.Expr:
+    """The length of a rod, by which the determinant is divided; 1 where a strut of variable length has none."""
+    return length if problem.is_never_zero(length) else Select(sp.Gt(length, 0), length, 1)

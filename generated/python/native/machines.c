@@ -58,11 +58,14 @@
 #include "tabletable_bc.h"
 #include "tgantry2.h"
 #include "tgantry3.h"
+#include "threecables.h"
 #include "tool.h"
+#include "tracyl.h"
 #include "transmit.h"
 #include "tripod_linear.h"
 #include "tripod_p3z.h"
 #include "tripod_rotary.h"
+#include "tripod_struts.h"
 #include "wrist2.h"
 #include "wrist3.h"
 
@@ -146,6 +149,8 @@ softkin_regular tabletable_bc_regular;
 softkin_regular_all tabletable_bc_regular_all;
 softkin_regular tgantry2_regular;
 softkin_regular tgantry3_regular;
+softkin_regular threecables_regular;
+softkin_regular tracyl_regular;
 softkin_regular transmit_regular;
 softkin_regular tripod_linear_regular;
 softkin_regular_all tripod_linear_regular_all;
@@ -153,6 +158,7 @@ softkin_regular tripod_p3z_regular;
 softkin_regular_all tripod_p3z_regular_all;
 softkin_regular tripod_rotary_regular;
 softkin_regular_all tripod_rotary_regular_all;
+softkin_regular tripod_struts_regular;
 softkin_regular wrist2_regular;
 softkin_regular_all wrist2_regular_all;
 softkin_regular wrist3_regular;
@@ -228,13 +234,16 @@ const softkin_native softkin_machines[] = {
         {tabletable_bc_regular, tabletable_bc_regular_all}},
     {"tgantry2 00c040124fc80e54", &tgantry2_mechanism, {tgantry2_regular, NULL}},
     {"tgantry3 cb966a3fda57e2a8", &tgantry3_mechanism, {tgantry3_regular, NULL}},
+    {"threecables c66469f8e8a8a076", &threecables_mechanism, {threecables_regular, NULL}},
     {"tool 877d142207057dac", &tool_mechanism, {NULL, NULL}},
+    {"tracyl ec5965dcc9d5a0a7", &tracyl_mechanism, {tracyl_regular, NULL}},
     {"transmit c72753112ba2056f", &transmit_mechanism, {transmit_regular, NULL}},
     {"tripod_linear cac8fc2ff3ffabcb", &tripod_linear_mechanism,
         {tripod_linear_regular, tripod_linear_regular_all}},
     {"tripod_p3z 436eb3abb879140e", &tripod_p3z_mechanism, {tripod_p3z_regular, tripod_p3z_regular_all}},
     {"tripod_rotary 6c9da790a9736e9f", &tripod_rotary_mechanism,
         {tripod_rotary_regular, tripod_rotary_regular_all}},
+    {"tripod_struts b766fe93268a1172", &tripod_struts_mechanism, {tripod_struts_regular, NULL}},
     {"wrist2 23dde73c938515d9", &wrist2_mechanism, {wrist2_regular, wrist2_regular_all}},
     {"wrist3 99cd6d8df5994054", &wrist3_mechanism, {wrist3_regular, wrist3_regular_all}},
     {NULL, NULL, {NULL, NULL}},

@@ -89,11 +89,14 @@ if TYPE_CHECKING:
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
+    from softkin.threecables import ThreeCables
     from softkin.tool import Tool
+    from softkin.tracyl import Tracyl
     from softkin.transmit import Transmit
     from softkin.tripod_linear import TripodLinear
     from softkin.tripod_p3z import TripodP3Z
     from softkin.tripod_rotary import TripodRotary
+    from softkin.tripod_struts import TripodStruts
     from softkin.wrist2 import Wrist2
     from softkin.wrist3 import Wrist3
 
@@ -171,11 +174,14 @@ __all__ = [
     "TGantry3",
     "TableTableAC",
     "TableTableBC",
+    "ThreeCables",
     "Tool",
+    "Tracyl",
     "Transmit",
     "TripodLinear",
     "TripodP3Z",
     "TripodRotary",
+    "TripodStruts",
     "Wrist2",
     "Wrist3",
     "__version__",
@@ -245,11 +251,14 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
+    "Softkin_ThreeCables": ("threecables", "ThreeCables"),
     "Kin_Tool": ("tool", "Tool"),
+    "Softkin_Tracyl": ("tracyl", "Tracyl"),
     "Softkin_Transmit": ("transmit", "Transmit"),
     "Kin_Tripod_Linear": ("tripod_linear", "TripodLinear"),
     "Kin_Tripod_P3Z": ("tripod_p3z", "TripodP3Z"),
     "Kin_Tripod_Rotary": ("tripod_rotary", "TripodRotary"),
+    "Softkin_Tripod_Struts": ("tripod_struts", "TripodStruts"),
     "Kin_Wrist2": ("wrist2", "Wrist2"),
     "Kin_Wrist3": ("wrist3", "Wrist3"),
 }

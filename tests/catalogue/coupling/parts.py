@@ -11,7 +11,7 @@ from softkin import Status
 from derive.description.mechanism import Mechanism, Role, Turning
 from tests.catalogue.closure import Array, Closure
 from tests.catalogue.driven_machines import DrivenClosure
-from tests.mechanisms import catalogue
+from tests.mechanisms import catalogue, has_struts
 
 EVERYTHING = {m.name: m for _, m in catalogue()}
 POSITIONS = tuple(
@@ -100,7 +100,7 @@ def frames(carrier: Part, first: Array, wrist: Part, second: Array) -> tuple[Arr
 
 def _range(one: Part, joint: object) -> tuple[float, float]:
     found = one.mechanism.joints[[j is joint for j in one.mechanism.joints].index(True)]
-    if found.loops:  # a cylinder has no other lengths than those at which its loop closes
+    if found.loops or (found.domain and has_struts(one.mechanism)):  # a cylinder or a strut: where its loop closes
         return min(0.8 * found.nominal, 1.2 * found.nominal), max(0.8 * found.nominal, 1.2 * found.nominal)
     size = 170.0 if found.is_angle else 400.0
     low, high = found.domain or (-size, size)

@@ -61,6 +61,13 @@ def two_arms(rod: float, apart: float) -> dict[str, float]:
     return sizes | {"base_distance": apart}
 
 
+def anchored(what: str, sense: float = 1.0) -> tuple[Edge, ...]:
+    """Struts whose anchors are corners of a right triangle, 500 from its centre: flat, too short, apart, too long."""
+    corners = enumerate(((0.0, 0.0, 0.0), (600.0, 0.0, 0.0), (0.0, sense * 800.0, 0.0)), 1)
+    places = {f"{what}_{k}_{c}": v for k, corner in corners for c, v in zip("xyz", corner, strict=True)}
+    return tuple((places, axes) for axes in ((500.0 * JUST,) * 3, (400.0,) * 3, (100.0, 100.0, 2000.0), (1e9,) * 3))
+
+
 T_LAYOUT = azimuths(0.0, 90.0, 180.0)
 CORNERS = ((150.0, 0.0), (0.0, 150.0), (-150.0, 0.0))
 FIVE_BARS: tuple[Edge, ...] = (
@@ -116,6 +123,8 @@ EDGES: dict[str, tuple[Edge, ...]] = {
         (inclined(200.0, 60.0), (0.0, 0.0, 0.0)),
         (inclined(200.0, 300.0), (0.0, 0.0, 0.0)),
     ),
+    "Softkin_ThreeCables": anchored("cable"),
+    "Softkin_Tripod_Struts": anchored("strut"),
     "Kin_Tripod_P3Z": (
         (rails(150.0, *CORNERS), (20.0, 20.0, 20.0)),
         (rails(160.0, *CORNERS), (20.0, 20.0, 500.0)),
@@ -132,6 +141,8 @@ OTHER_WAY_ROUND: dict[str, Edge] = {
         (10.0, 20.0, 30.0),
     ),
     "Kin_Tripod_P3Z": (rails(200.0, *CORNERS[::-1]), (10.0, 20.0, 30.0)),
+    "Softkin_ThreeCables": (anchored("cable", -1.0)[0][0], (600.0, 700.0, 650.0)),
+    "Softkin_Tripod_Struts": (anchored("strut", -1.0)[0][0], (600.0, 700.0, 650.0)),
     "MC_KIN_TYPE_12_XY": (links(300.0, 350.0, 110.0, 280.0, 90.0) | {"swap_xy": 1.0}, (10.0, 20.0)),
 }
 """Machines whose legs are numbered the other way round, and axis values."""

@@ -70,7 +70,7 @@ def test_the_side_does_not_depend_on_how_legs_are_numbered(name: str) -> None:
         there = other.forward(axes if swapped else axes[::-1])[0].position
         assert here == pytest.approx((there[1], there[0], there[2]) if swapped else there, abs=1e-9)
         if not swapped:
-            assert (here[2] > 30.0) == flag
+            assert (here[2] > 30.0) == (flag != assembly.parameter.endswith("_below"))
 
 
 ANGLES = (-180.0, -90.0, 0.0, 90.0, 180.0, 270.0)

@@ -10,6 +10,7 @@ from softkin import KinematicsError, Status
 from derive.description.reach import discs_meet
 from derive.geometry.vectors import vector
 from derive.ir.interpret import evaluate
+from tests.catalogue.loops.edges import anchored
 
 Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}
@@ -85,6 +86,7 @@ LINE = placed((100.0, 10.0), (200.0, 20.0), (300.0, 30.0))
 WIDE = {f"azimuth_{i}": a for i, a in zip("123", (0.0, 90.0, -90.0), strict=True)}
 WIDE |= {f"base_radius_{i}": 9000.0 for i in "123"}
 EVEN = {f"{name}_{i}": v for i in (1, 2, 3) for name, v in (("azimuth", 120.0 * i), ("base_radius", 700.0))}
+STRUTS = {what: anchored(what)[0][0] for what in ("cable", "strut")}
 IMPOSSIBLE = {
     "a plate smaller than its joints": (
         "Kin_Tripod_Rotary",
@@ -99,6 +101,8 @@ IMPOSSIBLE = {
     "a plate larger than the rails": ("Kin_Tripod_P3Z", RAILS, {"tcp_displacement": 150.01}, "rail"),
     "a plate larger than rail 2": ("Kin_Tripod_P3Z", RAILS, {**SMALL, "rail_x_2": -9.0, "rail_y_2": -9.0}, "rail 2"),
     "a plate larger than rail 3": ("Kin_Tripod_P3Z", RAILS, {**SMALL, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"),
+    "cables on a line": ("Softkin_ThreeCables", STRUTS["cable"], {"cable_3_y": 0.0}, "line"),
+    "struts on a line": ("Softkin_Tripod_Struts", STRUTS["strut"], {"strut_3_y": 0.0}, "line"),
     "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, {f"azimuth_{i}": 30.0 for i in "123"}, "azimuth"),
     "an upper arm too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_1": 501.0}, "link 1"),
     "a forearm too long behind": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_3": 701.0}, "link 3"),
