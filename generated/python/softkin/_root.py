@@ -19,8 +19,10 @@ def every_root(find: Callable[[Values], Any], given: Values, start: int, onward:
     given: its arguments; start, onward: the places among them of the start, and of the flag that asks for the next root
     """
     reference = given[start]
+    found: list[Values] = []
     for begin in (reference + ELSEWHERE, reference + ELSEWHERE + 1.0):  # a root may stand at the first, too
-        found: list[Values] = []
+        if found:
+            break
         left, at = 2.0 * pi - AHEAD, begin
         while True:
             values = list(given)
@@ -31,7 +33,5 @@ def every_root(find: Callable[[Values], Any], given: Values, start: int, onward:
                 break
             at += away
             found.append((at, tuple(joints)))
-        if found:
-            break
     found.sort(key=lambda one: abs((one[0] - reference - AHEAD + pi) % (2.0 * pi) - pi))
     return [joints for _, joints in found]
