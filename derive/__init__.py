@@ -14,8 +14,7 @@ output: the output folder, compared with its expected content, or replaced as a 
 pipeline: mechanisms through the folders: derived, measured, drawn, written
 program: one degree in radians, and a choice, for mechanism files to import
 progress: the lines and the bar of a run while it works
-reach: conditions that arms can reach a common point, for mechanism files to import
-struts: machines whose struts or cables change their lengths and meet in a point, for mechanism files to import
+reach: arms and struts that reach a common point, for mechanism files to import
 vectors: vectors for closures that are not a chain, for mechanism files to import
 work: the work of a derivation and of its measurement, counted in terms and steps, and its bound
 """

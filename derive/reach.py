@@ -1,5 +1,5 @@
-"""Conditions that arms can reach a common point, for mechanism files to import."""
+"""Arms and struts that reach a common point, for mechanism files to import."""
 
-from derive.description.reach import discs_meet
+from derive.description.reach import discs_meet, three_to_a_point
 
-__all__ = ["discs_meet"]
+__all__ = ["discs_meet", "three_to_a_point"]

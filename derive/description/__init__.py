@@ -14,7 +14,7 @@ loops: the parts of a closed loop: rods, planes that guide points, bounds and li
 mechanism: the mechanism with its task, and all names that a description uses
 places: the line of a description that is wrong
 quantity: joints and parameters as symbols in equations
-reach: conditions that arms can reach a common point
+reach: arms that reach a common point; struts or cables that meet in one
 remedies: what to do about a refusal whose own sentence does not say it
 validate: checks that refuse a wrong description before anything is derived
 """

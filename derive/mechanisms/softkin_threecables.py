@@ -1,6 +1,6 @@
 """Softkin_ThreeCables: three cables, wound from anchors anywhere, hold one point."""
 
-from derive.struts import three_to_a_point
+from derive.reach import three_to_a_point
 
 MECHANISM = three_to_a_point(
     "Softkin_ThreeCables",

@@ -1,6 +1,6 @@
 """Softkin_Tripod_Struts: three struts of variable length, anchored anywhere, carry one point."""
 
-from derive.struts import three_to_a_point
+from derive.reach import three_to_a_point
 
 MECHANISM = three_to_a_point(
     "Softkin_Tripod_Struts",

@@ -20,7 +20,7 @@ def hung(nominal: tuple[float, float, float]) -> Mechanism:
     cables = tuple(linear(f"S{k}", f"cable {k}", nominal=v) for k, v in enumerate(nominal, 1))
     anchors = [(RADIUS * cos(2 * pi * k / 3), RADIUS * sin(2 * pi * k / 3), 0) for k in range(3)]
     return Mechanism(
-        name="Kin_ThreeCables",
+        name="Kin_HungPoint",
         joints=cables,
         parameters=(RADIUS,),
         rods=tuple(rod(j.key, anchor, (X, Y, Z), j) for j, anchor in zip(cables, anchors, strict=True)),
