@@ -68,7 +68,7 @@ def test_a_search_and_its_loop_count_and_ask() -> None:
     assert all(is_count(s) for s in search.inputs if s.name.startswith("wanted_"))
     (loop,) = (s for s in search.body if isinstance(s, Iterate))
     assert {"stage", "direction", "side", "trials", "passes_left"} <= {s.name for s in loop.state if is_count(s)}
-    assert [s.name for s in loop.state if isinstance(s, Flag)] == ["was_mirrored"]
+    assert [s.name for s in loop.state if isinstance(s, Flag)] == ["is_newton", "was_mirrored"]
 
 
 X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_xy"))
