@@ -17,7 +17,7 @@ from derive.equations.axes import Forward, axis_lets, frozen_lets, held_lets, re
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.geometry.frames import Chain
 from derive.ir.passes import normalise, renamed
-from derive.ir.primitives import Select
+from derive.ir.primitives import Root, Select, larger
 from derive.ir.program import Let, Output, Program, Require, Statement, rewritten
 from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, flag, real, sine
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
@@ -31,6 +31,10 @@ from derive.kinematics.scan.slopes import slope_name, with_slopes
 from derive.work import stage
 
 SEARCHED = flag("searched")
+_FOLD = sp.Rational(5, 4)
+"""Where the room of a step is `1 - c^2`, the root of 1/4 + c^2 is treated as a length: it is shortest where the step is
+furthest from its folds, and turns by a sixth up to c = 0.85.
+"""
 
 
 @dataclass(frozen=True)
@@ -151,8 +155,9 @@ def _trial(
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])
     values = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
-    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(values, 1)]
     rooms = [room_of(c) for c in conditions_of(solved)]
+    values += [Root(larger(_FOLD - room, sp.Integer(0))) for room in rooms]
+    lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(values, 1)]
     room = Let(real("room"), least(rooms) if rooms else sp.Integer(1))
     statements = with_goal(named_apart((*first, *solved, left, *lengths, room), "tried"))
     signed = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)

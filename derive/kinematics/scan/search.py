@@ -54,7 +54,7 @@ The next root ahead is further away than this.
 """
 ELSEWHERE = sp.Float("2.5")
 """All roots are found onward from so far ahead of the reference, which may be a root."""
-MOST_PASSES = 1500
+MOST_PASSES = 4000
 """The passes of the search, at most: 30 to 110 at a random pose; of 5,400 poses next to straight wrists and folded
 elbows two took more than 1,000, and none more than 1,410.
 """
