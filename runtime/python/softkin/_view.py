@@ -1,4 +1,4 @@
-"""The viewer in a notebook: its page stands in the output as it is, and starts with one machine."""
+"""The viewer in a notebook: its page stands in the output, packed, and starts with one machine."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzi
   document.close();
 });
 </script>"""
-"""A page that unpacks another one: a browser takes an address of at most two megabytes."""
+"""A page that unpacks another one: Chromium shows no frame whose address is longer than two megabytes."""
 _DATA = re.compile(r'<script type="application/json" id="page">(.*?)</script>', re.DOTALL)
 
 
