@@ -16,6 +16,8 @@ from derive.ir.program import Let
 from derive.ir.symbols import real
 
 _PAIRS = ((1, 2), (1, 3), (2, 3))
+_ON_A_LINE = 1e-12
+"""The square of the sine between two sides of the triangle of the anchors, at or below which they are on a line."""
 
 
 def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str) -> tuple[Constraint, ...]:
@@ -63,10 +65,6 @@ def _vector(name: str) -> Vector:
 
 def _named(names: Vector, values: Vector) -> tuple[Let, ...]:
     return tuple(Let(real(str(name)), value) for name, value in zip(names, values, strict=True))
-
-
-_ON_A_LINE = 1e-12
-"""The square of the sine between two sides of the triangle of the anchors, at or below which they are on a line."""
 
 
 def three_to_a_point(

@@ -1,7 +1,8 @@
-"""The viewer in a notebook: its page stands in the output as it is, and starts with one machine."""
+"""The viewer in a notebook: its page stands in the output, packed, and starts with one machine."""
 
 from __future__ import annotations
 
+import gzip
 import json
 import re
 from base64 import b64encode
@@ -20,6 +21,15 @@ if TYPE_CHECKING:
 
 _PAGE = Path(__file__).with_name("_viewer.html")
 """The page that a wheel carries."""
+_UNPACKED = """<!doctype html><script>
+const bytes = Uint8Array.from(atob("PACKED"), (one) => one.charCodeAt(0));
+new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text().then((text) => {
+  document.open();
+  document.write(text);
+  document.close();
+});
+</script>"""
+"""A page that unpacks another one: Chromium shows no frame whose address is longer than two megabytes."""
 _DATA = re.compile(r'<script type="application/json" id="page">(.*?)</script>', re.DOTALL)
 
 
@@ -59,4 +69,6 @@ def view(robot: Mechanism, axes: Numbers | None, page: str | PathLike[str] | Non
         factors = (RADIAN if axis.unit == "rad" else 1.0 for axis in robot.AXES)
         values = zip(reals(axes, len(robot.AXES), "axes"), factors, strict=True)
         parts.append(f"axes={','.join(repr(value * factor) for value, factor in values)}")
-    return View(robot.NAME, f"data:text/html;base64,{b64encode(text.encode()).decode()}#{'&amp;'.join(parts)}")
+    packed = b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+    whole = b64encode(_UNPACKED.replace("PACKED", packed).encode()).decode()
+    return View(robot.NAME, f"data:text/html;base64,{whole}#{'&amp;'.join(parts)}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import json
 import re
 import sys
@@ -85,7 +86,7 @@ def test_without_matplotlib_the_message_says_what_to_install(monkeypatch: pytest
 
 
 def test_the_viewer_of_a_notebook_has_the_page_and_the_pose(tmp_path: Path) -> None:
-    """The address of the frame is the page as it is, and behind it machine, parameters and axes."""
+    """The address of the frame is the page, packed, and behind it machine, parameters and axes."""
     page = tmp_path / "viewer.html"
     data = {"classes": {"Kin_Pos_RRR": "PosRRR"}, "keywords": {"Kin_Pos_RRR": {"a two": "a2"}}}
     page.write_text(f'<p>é</p><script type="application/json" id="page">{json.dumps(data)}</script>', encoding="utf-8")
@@ -93,7 +94,8 @@ def test_the_viewer_of_a_notebook_has_the_page_and_the_pose(tmp_path: Path) -> N
     shown = robot.with_tool(Frame((0.0, 0.0, 0.0))).in_radians().view((np.pi / 2, 0.0, -np.pi), page)
     (source,) = re.findall(r'<iframe src="data:text/html;base64,([^"]*)"', shown._repr_html_())
     text, _, fragment = source.partition("#")
-    assert base64.b64decode(text) == page.read_bytes()
+    packed = re.search(r'atob\("(.*?)"\)', base64.b64decode(text).decode())
+    assert packed is not None and gzip.decompress(base64.b64decode(packed[1])) == page.read_bytes()
     given = parse_qs(fragment.replace("&amp;", "&"))
     assert given["machine"] == ["Kin_Pos_RRR"]
     assert [float(value) for value in given["axes"][0].split(",")] == pytest.approx([90.0, 0.0, -180.0])
