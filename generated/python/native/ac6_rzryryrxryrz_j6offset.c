@@ -885,7 +885,12 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       + r12_from_q1_tried*slope_cos_q23_tried - goal_r32*slope_sin_q23_tried;
   const double slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried)
       *cos_q6_tried + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried;
-  const double room_tried = 1.000000000001 - cos_swing_q3_tried*cos_swing_q3_tried;
+  const double cos_swing_q3_tried_squared = cos_swing_q3_tried*cos_swing_q3_tried;
+  const double room_tried = 1.000000000001 - cos_swing_q3_tried_squared;
+  const double turning_length_3_tried = softkin_root(0.2499999999989999 + cos_swing_q3_tried_squared);
+  const double slope_turning_length_3_tried = turning_length_3_tried > 0.0
+      ? slope_cos_swing_q3_tried*cos_swing_q3_tried
+      /(turning_length_3_tried > 0.0 ? turning_length_3_tried : 1.0) : 0.0;
   found[0] = -r12_from_q123_before_q6_tried;
   found[1] = -slope_r12_from_q123_before_q6_tried;
   found[2] = room_tried;
@@ -893,6 +898,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   found[4] = distance_q1_tried*slope_distance_q1_tried;
   found[5] = reach_tried;
   found[6] = reach_tried*slope_reach_tried;
+  found[7] = turning_length_3_tried;
+  found[8] = slope_turning_length_3_tried*turning_length_3_tried;
   return SOFTKIN_OK;
 }
 
@@ -1337,7 +1344,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   bool is_newton = false;
   bool was_mirrored = false;
   double nearest = 9.0;
-  int passes_left = 1500;
+  int passes_left = 4000;
   double at = 0.0;
   int trials = 0;
   double best = 0.0;
@@ -1371,11 +1378,11 @@ static softkin_status find_root(const void *machine, const double *given, double
   double met_from_q6 = 0.0;
   double kept_q6 = 0.0;
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
-      length_2, growth_2, size, best_now, way_now, best_now_minus_way_now, newton_place, settled, least_now,
-      begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1, moved_q2, moved_q3,
-      moved_q4, moved_q5, moved_q6, end_of_way, moved, start_minus_q6, way_ahead, nearest_now, place_next,
-      width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2, aside_now,
-      error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
+      length_2, growth_2, length_3, growth_3, size, best_now, way_now, best_now_minus_way_now, newton_place,
+      settled, least_now, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1,
+      moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, end_of_way, moved, start_minus_q6, way_ahead,
+      nearest_now, place_next, width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2,
+      aside_now, error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
       at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
       value_in_place_of_start, place_of_start, at_next, best_next, least_next, way_next, last_next,
       growth_before_next, bend_next, settled_1_next, settled_2_next, settled_3_next, settled_4_next,
@@ -1387,7 +1394,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends,
       turns_back, is_over, is_shortest, mirrors, part_ends, start_ends, is_better, is_nearest, side_ends,
       part_is_done, begins, is_first, seeks_length, is_newton_next, was_mirrored_next;
-  for (int pass = 0; pass < 1501; pass += 1) {
+  for (int pass = 0; pass < 4001; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
     if (stage == 0) {
@@ -1402,7 +1409,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     is_rounding = results[0] != 0.0;
     safe_step = results[1];
     real_of_direction = direction;
-    double results_of_2[7] = {0.0};
+    double results_of_2[9] = {0.0};
     if ((stage == 1) || (stage == 2)) {
       const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
           goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
@@ -1419,7 +1426,10 @@ static softkin_status find_root(const void *machine, const double *given, double
     growth_1 = results_of_2[4];
     length_2 = results_of_2[5];
     growth_2 = results_of_2[6];
-    size = stage == 1 ? (number_of_start > 12 ? length_2 : length_1) : fabs(remainder);
+    length_3 = results_of_2[7];
+    growth_3 = results_of_2[8];
+    size = stage == 1 ? (number_of_start > 15 ? length_3 : (number_of_start > 12 ? length_2 : length_1))
+        : fabs(remainder);
     is_less = size < least;
     best_now = is_less ? at : best;
     way_now = is_less ? real_of_direction*remainder/(fabs(rate) > 0.0 ? rate : 1e30) : 0.25*way;
@@ -1493,7 +1503,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     next_number = number_of_start < (width <= 1e-9 ? 1 : (width <= 0.001 ? 3 : (width <= 0.1 ? 5 : 9)))
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
-        : (number_of_start < 15 ? number_of_start_plus_one : 0));
+        : (number_of_start < 18 ? number_of_start_plus_one : 0));
     start_minus_q6 = start_ - q6;
     way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
         + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
@@ -1508,7 +1518,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     begins = (!part_is_done) && (part_ends || start_ends);
     is_first = part_ends || side_ends;
     number_now = is_first ? 1 : (start_ends ? next_number : number_of_start);
-    seeks_length = begins && ((number_now == 10) || (number_now == 13));
+    seeks_length = begins && ((number_now == 10) || (number_now == 13) || (number_now == 16));
     next_stage = is_near || mirrors || ((!steps_end) && (stage == 3)) ? 3
         : (seeks_length || ((!is_shortest) && (stage == 1)) ? 1
         : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
@@ -1521,7 +1531,8 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? (width > 0.0 ? (width <= 1e-6 ? 8.0 : 2.0)*width : (is_rounding ? 1e-13 : 0.0)) : width));
     side_next = part_ends ? 1 : (side_ends ? -1 : side);
     shortest_now = is_shortest ? best_now : shortest;
-    growth = (number_of_start > 12 ? growth_2 : growth_1)*real_of_direction;
+    growth = (number_of_start > 15 ? growth_3 : (number_of_start > 12 ? growth_2 : growth_1))
+        *real_of_direction;
     gap = growth - growth_before;
     way_of_trial = at - last;
     bend_now = (trials > 5) && (gap*way_of_trial > 0.0)
@@ -1550,8 +1561,9 @@ static softkin_status find_root(const void *machine, const double *given, double
         : (number_now == 6 ? 0.125
         : (number_now == 5 ? 0.75
         : (number_now == 4 ? 0.25 : (number_now == 3 ? 1.0 : (number_now == 2 ? 0.0 : 0.5))))))))*width;
-    value_in_place_of_start = (number_now == 11) || (number_now == 14) ? aside_now + shortest_now
-        : ((number_now == 12) || (number_now == 15) ? shortest_now - aside_now : shortest_now);
+    value_in_place_of_start = (number_now == 11) || (number_now == 14) || (number_now == 17) ? aside_now
+        + shortest_now : ((number_now == 12) || (number_now == 15) || (number_now == 18) ? shortest_now
+        - aside_now : shortest_now);
     place_of_start = seeks_length ? place_
         : (number_now > 9 ? (value_in_place_of_start < place_ ? place_
         : (value_in_place_of_start > place_plus_width ? place_plus_width : value_in_place_of_start))

@@ -32,15 +32,15 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 680197 additions, 895668 multiplications, 34612 divisions, 18014 square roots, 36068 sines
-    inverse, all 16 branches: 10883425 additions, 14330784 multiplications, 553792 divisions, 288224 square
-    roots, 577088 sines
+    inverse: 1807697 additions, 2378168 multiplications, 96113 divisions, 48014 square roots, 96068 sines
+    inverse, all 16 branches: 28923425 additions, 38050784 multiplications, 1537808 divisions, 768224 square
+    roots, 1537088 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
     12 sines
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
-    one step of the search: at most 1501 passes, all of which are counted
+    one step of the search: at most 4001 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
 answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 2814f1fd62d9ef71"
+    KEY = "ac6_rzryryrxryrz_j6offset 6824a5fcc8694bde"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1137,7 +1137,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
-        room_tried = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
+        cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
+        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
+        slope_turning_length_3_tried = (
+            slope_cos_swing_q3_tried
+            * cos_swing_q3_tried
+            / (turning_length_3_tried if turning_length_3_tried > 0.0 else 1.0)
+            if turning_length_3_tried > 0.0
+            else 0.0
+        )
         return (
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
@@ -1146,6 +1155,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
             reach_tried * slope_reach_tried,
+            turning_length_3_tried,
+            slope_turning_length_3_tried * turning_length_3_tried,
         )
 
     def _joints_at(self, given: Values) -> Values | Status:
@@ -1812,7 +1823,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             False,
             False,
             9.0,
-            1500,
+            4000,
             0.0,
             0,
             0.0,
@@ -1846,7 +1857,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
         )
-        for _ in range(1501):
+        for _ in range(4001):
             place_plus_width = place + width
             if stage == 0:
                 found = self._look_at_wave(
@@ -1906,9 +1917,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
                 if isinstance(found, Status):
                     return found
-                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = found
+                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = found
             else:
-                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = (
+                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = (
+                    0.0,
+                    0.0,
                     0.0,
                     0.0,
                     0.0,
@@ -1917,7 +1930,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     0.0,
                     0.0,
                 )
-            size = (length_2 if number_of_start > 12 else length_1) if stage == 1 else abs(remainder)
+            size = (
+                (length_3 if number_of_start > 15 else (length_2 if number_of_start > 12 else length_1))
+                if stage == 1
+                else abs(remainder)
+            )
             is_less = size < least
             best_now = at if is_less else best
             way_now = real_of_direction * remainder / (rate if abs(rate) > 0.0 else 1e30) if is_less else 0.25 * way
@@ -2039,7 +2056,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 else (
                     (10 if width > 1e-6 else 0)
                     if number_of_start <= 9
-                    else (number_of_start_plus_one if number_of_start < 15 else 0)
+                    else (number_of_start_plus_one if number_of_start < 18 else 0)
                 )
             )
             start_minus_q6 = start - q6
@@ -2066,7 +2083,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             begins = (not part_is_done) and (part_ends or start_ends)
             is_first = part_ends or side_ends
             number_now = 1 if is_first else (next_number if start_ends else number_of_start)
-            seeks_length = begins and ((number_now == 10) or (number_now == 13))
+            seeks_length = begins and ((number_now == 10) or (number_now == 13) or (number_now == 16))
             next_stage = (
                 3
                 if is_near or mirrors or ((not steps_end) and (stage == 3))
@@ -2105,7 +2122,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             side_next = 1 if part_ends else (-1 if side_ends else side)
             shortest_now = best_now if is_shortest else shortest
-            growth = (growth_2 if number_of_start > 12 else growth_1) * real_of_direction
+            growth = (
+                growth_3 if number_of_start > 15 else (growth_2 if number_of_start > 12 else growth_1)
+            ) * real_of_direction
             gap = growth - growth_before
             way_of_trial = at - last
             bend_now = (
@@ -2181,8 +2200,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             value_in_place_of_start = (
                 aside_now + shortest_now
-                if (number_now == 11) or (number_now == 14)
-                else (shortest_now - aside_now if (number_now == 12) or (number_now == 15) else shortest_now)
+                if (number_now == 11) or (number_now == 14) or (number_now == 17)
+                else (
+                    shortest_now - aside_now
+                    if (number_now == 12) or (number_now == 15) or (number_now == 18)
+                    else shortest_now
+                )
             )
             place_of_start = (
                 place

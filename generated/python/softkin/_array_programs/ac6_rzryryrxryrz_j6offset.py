@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8774
+    VALUES = 8809
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -971,7 +971,16 @@ class ArrayPrograms(Programs):
         slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried) * cos_q6_tried + (
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
-        room_tried = 1.000000000001 - cos_swing_q3_tried * cos_swing_q3_tried
+        cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
+        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
+        slope_turning_length_3_tried = select(
+            turning_length_3_tried > 0.0,
+            slope_cos_swing_q3_tried
+            * cos_swing_q3_tried
+            / select(turning_length_3_tried > 0.0, turning_length_3_tried, 1.0),
+            0.0,
+        )
         return (
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
@@ -980,6 +989,8 @@ class ArrayPrograms(Programs):
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
             reach_tried * slope_reach_tried,
+            turning_length_3_tried,
+            slope_turning_length_3_tried * turning_length_3_tried,
         )
 
     def joints_at(self, given: Values, status: Codes) -> Values:
@@ -1725,7 +1736,7 @@ class ArrayPrograms(Programs):
             False,
             False,
             9.0,
-            1500,
+            4000,
             0.0,
             0,
             0.0,
@@ -1759,7 +1770,7 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
         )
-        for _ in range(1501):
+        for _ in range(4001):
             place_plus_width = place + width
             found = run_where(
                 stage == 0,
@@ -1817,10 +1828,14 @@ class ArrayPrograms(Programs):
                     wanted_shoulder,
                 ),
                 status,
-                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
-            remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2 = found
-            size = select(stage == 1, select(number_of_start > 12, length_2, length_1), absolute(remainder))
+            remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = found
+            size = select(
+                stage == 1,
+                select(number_of_start > 15, length_3, select(number_of_start > 12, length_2, length_1)),
+                absolute(remainder),
+            )
             is_less = size < least
             best_now = select(is_less, at, best)
             way_now = select(
@@ -1941,7 +1956,7 @@ class ArrayPrograms(Programs):
                 select(
                     number_of_start <= 9,
                     select(width > 1e-6, 10, 0),
-                    select(number_of_start < 15, number_of_start_plus_one, 0),
+                    select(number_of_start < 18, number_of_start_plus_one, 0),
                 ),
             )
             start_minus_q6 = start - q6
@@ -1965,7 +1980,7 @@ class ArrayPrograms(Programs):
             begins = (opposite(part_is_done)) & (part_ends | start_ends)
             is_first = part_ends | side_ends
             number_now = select(is_first, 1, select(start_ends, next_number, number_of_start))
-            seeks_length = begins & ((number_now == 10) | (number_now == 13))
+            seeks_length = begins & ((number_now == 10) | (number_now == 13) | (number_now == 16))
             next_stage = select(
                 is_near | mirrors | ((opposite(steps_end)) & (stage == 3)),
                 3,
@@ -2004,7 +2019,10 @@ class ArrayPrograms(Programs):
             )
             side_next = select(part_ends, 1, select(side_ends, -1, side))
             shortest_now = select(is_shortest, best_now, shortest)
-            growth = select(number_of_start > 12, growth_2, growth_1) * real_of_direction
+            growth = (
+                select(number_of_start > 15, growth_3, select(number_of_start > 12, growth_2, growth_1))
+                * real_of_direction
+            )
             gap = growth - growth_before
             way_of_trial = at - last
             bend_now = select(
@@ -2077,9 +2095,11 @@ class ArrayPrograms(Programs):
                 * width
             )
             value_in_place_of_start = select(
-                (number_now == 11) | (number_now == 14),
+                (number_now == 11) | (number_now == 14) | (number_now == 17),
                 aside_now + shortest_now,
-                select((number_now == 12) | (number_now == 15), shortest_now - aside_now, shortest_now),
+                select(
+                    (number_now == 12) | (number_now == 15) | (number_now == 18), shortest_now - aside_now, shortest_now
+                ),
             )
             place_of_start = select(
                 seeks_length,
