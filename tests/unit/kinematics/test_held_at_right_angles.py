@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from derive.description.mechanism import Mechanism, Task, Turning
+from derive.description.mechanism import Mechanism, Task, Turning, angle, length, radians
 from derive.description.validate import validate
 from derive.geometry.frames import Ry, Rz, Ty, Tz
 from derive.kinematics.build import build
@@ -12,9 +12,22 @@ from tests.unit.kinematics.test_elimination import commanded, poses_of
 from tests.unit.kinematics.test_refused_within_bounds import J
 
 A1, A2, A3, A4, A5, A6, A7 = J[:7]
-CHAIN = (Rz(A1) * Tz(280) * Ty(5) * Ry(A2) * Ty(7) * Tz(420) * Rz(A3) * Ty(13) * Ry(A4) * Tz(310) * Ty(-9) * Rz(A5)) * (
-    Ty(12) * Ry(A6) * Tz(110) * Ty(10) * Rz(A7) * Tz(60)
-)
+CHAIN_TO_WRIST = (
+    Rz(A1) * Tz(280) * Ty(5) * Ry(A2) * Ty(7) * Tz(420) * Rz(A3) * Ty(13) * Ry(A4) * Tz(310) * Ty(-9) * Rz(A5)
+) * (Ty(12) * Ry(A6) * Tz(110) * Ty(10))
+CHAIN = CHAIN_TO_WRIST * Rz(A7) * Tz(60)
+TWIST, TIP = angle("twist", "turn of the flange", nominal=20.0), length("tip", "flange to tip", nominal=80.0)
+
+
+@pytest.mark.slow
+def test_a_turn_by_a_held_joint_and_an_angle() -> None:
+    """The last joint, held, stands in one factor of the chain with an angle of the machine."""
+    chain = CHAIN_TO_WRIST * Rz(A7 + radians(TWIST)) * Ty(TIP)
+    arm = Mechanism(
+        "Arm", parameters=(TWIST, TIP), joints=J[:7], chain=chain, task=Task("xyz", Turning.FULL), held=(A7,)
+    )
+    search = build(validate(arm)).mechanism.search
+    assert search is not None and search.is_eliminated
 
 
 @pytest.mark.slow
