@@ -138,7 +138,6 @@ def _inverse(machine: Machine, frame: Reals, configuration: Bytes, reference: Re
     return (Status.OK, chosen) if limits is Status.OK else (limits, nothing)
 
 
-@lru_cache(_KEPT)
 def branches(
     machine: Machine, frame: Reals, configuration: Bytes, reference: Reals
 ) -> tuple[list[Bytes], list[Reals], list[Status]]:

@@ -4,7 +4,8 @@ It looks around the circle, from the start to both sides, for parts in which the
 starts, on both sides of a step whose roots may join there. From a start the joint is settled on the wanted branch, and
 then the whole closure is met. If that leads to another branch, the joints are mirrored about where they began: two
 solutions that meet stand on both sides of it. The answer is the root nearest to the start; or the next one ahead of it,
-where all are asked for, one after the other.
+where all are asked for, one after the other. Where joints are eliminated, two solutions may stand at one root, each a
+twin of the other: then the answer is the one nearer to the reference, or both are.
 """
 
 from __future__ import annotations
@@ -14,13 +15,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import Joint, Mechanism
 from derive.equations.axes import reference_value
 from derive.ir.constants import BOUNDARY, CONVERGED, COST_OF_A_STALL, PASSES, STALLED
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
-from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
+from derive.ir.symbols import SCALE, SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
 from derive.kinematics.scan.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
 from derive.kinematics.scan.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
@@ -68,6 +69,9 @@ _STAGE, _PLACE, _WIDTH = count("stage"), real("place"), real("width")
 _NUMBER, _SHORTEST, _ASIDE = count("number_of_start"), real("shortest"), real("aside")
 _BEFORE, _LEFT, _MIRRORED = real("error_before"), count("steps_left"), flag("was_mirrored")
 _NEAREST, _PASSES_LEFT = real("nearest"), count("passes_left")
+_HAS_TWIN, _TWO_WAYS = flag("has_twin"), flag("had_two_ways")
+TWIN = "twin"
+"""The output that tells whether there is a twin; those behind it are its joints."""
 _SETTLED = tuple(real(f"settled_{k}") for k in range(1, 7))
 """The last joint values of a part, on one side, from which the closure was met."""
 FIRST, LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
@@ -78,6 +82,8 @@ _ROOM = sp.Float("1e-6")
 """Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
 _SAME = sp.Float("1e-12")
 """Joint values this near (radians) are the same: from there the closure is met once. In a narrow part none are."""
+_APART = sp.Float("1e-5")
+"""Twins are further apart than this (radians and lengths, added)."""
 _MOVED = sp.Float("1e-8")
 """Joints are mirrored if the steps on the closure moved them by more than this (radians and lengths, added)."""
 _TURN = 2 * sp.pi
@@ -105,8 +111,9 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
     body = (
         *_looked(steps.look, arguments),
         *_tried(steps, arguments, lengths),
-        *_met(steps, arguments, joints, mechanism.search.joint.symbol),
-        *_next_start(lengths, SIDE in steps.trial.inputs),
+        *_met(steps, arguments, mechanism, joints),
+        *(_twins(mechanism.solved_joints) if eliminated else ()),
+        *_next_start(lengths, SIDE in steps.trial.inputs, has_twins=eliminated),
         *_ends(),
     )
     begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(most)}
@@ -117,6 +124,10 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         **dict.fromkeys(_SETTLED, _FAR),
     }
     following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
+    if eliminated:
+        begin |= {_HAS_TWIN: sp.false, _TWO_WAYS: sp.false}
+        following |= {_HAS_TWIN: flag("has_twin_now"), _TWO_WAYS: flag("has_two_ways")}
+        following |= {_twin(j): _twin_now(j) for j in joints}
     named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
     is_always = mechanism.search.where is None
     loop = Iterate(
@@ -129,15 +140,24 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         otherwise=None,
         note="one step of the search",
     )
-    found = {j: _kept_now(j) for j in joints} | {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    held: dict[sp.Symbol, sp.Expr] = {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    found = {j: Select(flag("takes_twin"), _twin_now(j), _kept_now(j)) if eliminated else _kept_now(j) for j in joints}
     nearest = real("nearest_now")
     outputs = [
         Output(FOUND.name, sp.Lt(nearest, _FAR)),
         Output(AWAY.name, Select(sp.Lt(nearest, _FAR), nearest, _ZERO)),
-        *(Output(f"found_{j.symbol.name}", found[j.symbol]) for j in mechanism.joints),
+        *_joints_out("found", mechanism, held | found),
     ]
-    program = normalise(FIND_ROOT, (loop,), outputs)
+    if eliminated:
+        twin = held | {j: _twin_now(j) for j in joints}
+        outputs += [Output(TWIN, flag("has_twin_now")), *_joints_out(TWIN, mechanism, twin)]
+    lets = _nearer_twin(mechanism.solved_joints) if eliminated else ()
+    program = normalise(FIND_ROOT, (loop, *lets), outputs)
     return replace(program, summary="The joints at the root nearest to the start, or next ahead of it")
+
+
+def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.Expr]) -> list[Output]:
+    return [Output(f"{word}_{j.symbol.name}", values[j.symbol]) for j in mechanism.joints]
 
 
 def _kept(joint: sp.Symbol) -> sp.Symbol:
@@ -208,10 +228,11 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
 
 
 def _met(
-    steps: Steps, arguments: Sequence[sp.Symbol], joints: Sequence[sp.Symbol], searched: sp.Symbol
+    steps: Steps, arguments: Sequence[sp.Symbol], mechanism: Mechanism, joints: Sequence[sp.Symbol]
 ) -> Iterator[Let | Call]:
     """A step on the closure; where it is met, whether the joints fit, and are the nearest."""
-    here: dict[sp.Symbol, sp.Expr] = {j: j for j in joints}
+    assert mechanism.search is not None
+    searched, here = mechanism.search.joint.symbol, dict[sp.Symbol, sp.Expr]((j, j) for j in joints)
     yield _call(steps.step, arguments, {**here, IS_NEWTON: IS_NEWTON}, _is_at(_MEETING))
     is_last = sp.Or(sp.Gt(2 * ERROR, _BEFORE), sp.Le(_LEFT, 0))
     ends = sp.Or(sp.Le(ERROR, BOUNDARY / 100), sp.And(sp.Le(ERROR, CONVERGED), is_last), sp.Le(_LEFT, 0))
@@ -222,7 +243,12 @@ def _met(
     yield Let(real("way_ahead"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
     within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("way_ahead"), AHEAD), sp.Lt(real("way_ahead"), _TURN - AHEAD)))
     fits = sp.And(flag("meets_pose"), flag(FITS))
-    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("way_ahead"), _NEAREST)))
+    is_new = sp.And(fits, within)
+    if mechanism.search.is_eliminated:
+        yield Let(flag("is_answer"), is_new)
+        yield from _is_twin(mechanism.solved_joints)
+        is_new = sp.And(flag("is_answer"), sp.Not(flag("is_twin")))
+    yield Let(flag("is_better"), sp.And(is_new, sp.Lt(real("way_ahead"), _NEAREST)))
     yield Let(real("nearest_now"), Select(flag("is_better"), real("way_ahead"), _NEAREST))
     yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
     has_moved = sp.Gt(real("moved"), _MOVED)
@@ -230,12 +256,51 @@ def _met(
     yield Let(flag("mirrors"), sp.And(flag("meets_pose"), sp.Not(flag(FITS)), sp.Not(_MIRRORED), has_moved))
 
 
-def _next_start(lengths: int, has_sides: bool) -> Iterator[Let]:
+def _twin(joint: sp.Symbol) -> sp.Symbol:
+    return real(f"other_{joint.name}")
+
+
+def _twin_now(joint: sp.Symbol) -> sp.Symbol:
+    return real(f"other_now_{joint.name}")
+
+
+def _is_twin(joints: Sequence[Joint]) -> Iterator[Let]:
+    """Whether joints that fit stand where the nearest ones do, and are others: the first of both are kept."""
+    beside = sp.Le(sp.Abs(real("way_ahead") - _NEAREST), AHEAD)
+    ways = [sp.Abs(_between(j, j.symbol, _kept(j.symbol))) for j in joints]
+    yield Let(flag("is_twin"), sp.And(flag("is_answer"), beside, sp.Gt(sp.Add(*ways), _APART)))
+
+
+def _twins(joints: Sequence[Joint]) -> Iterator[Let]:
+    """The twin so far, and whether a root may have one."""
+    stays = sp.Or(sp.Not(flag("is_better")), sp.Gt(real("way_ahead"), _NEAREST - AHEAD))
+    yield Let(flag("has_twin_now"), sp.Or(flag("is_twin"), sp.And(_HAS_TWIN, stays)))
+    yield from (Let(_twin_now(j.symbol), Select(flag("is_twin"), j.symbol, _twin(j.symbol))) for j in joints)
+    settles = _is_at(_SETTLING)
+    yield Let(flag("has_two_ways"), sp.Or(sp.And(settles, sp.Le(ROOM, _ROOM)), sp.And(sp.Not(settles), _TWO_WAYS)))
+
+
+def _nearer_twin(joints: Sequence[Joint]) -> Iterator[Let]:
+    """Whether a twin is nearer to the reference."""
+    ways = [real(f"way_of_{word}") for word in ("kept", TWIN)]
+    for way, named in zip(ways, (_kept_now, _twin_now), strict=True):
+        yield Let(way, sp.Add(*[_between(j, named(j.symbol), reference_value(j)) ** 2 for j in joints]))
+    takes = sp.And(sp.Not(ONWARD), flag("has_twin_now"), sp.Lt(ways[1], ways[0] - AHEAD))
+    yield Let(flag("takes_twin"), takes)
+
+
+def _between(joint: Joint, value: sp.Expr, other: sp.Expr) -> sp.Expr:
+    """How far two values of a joint are apart, without turns; those of a slide in lengths of the machine."""
+    return Wrap(value - other) if joint.is_angle else (value - other) / SCALE
+
+
+def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[Let]:
     """The start that follows, if one ends here."""
     is_unsettled = sp.And(flag("is_settled"), sp.Not(flag("is_near")))
     yield Let(flag("start_ends"), sp.Or(is_unsettled, sp.And(flag("steps_end"), sp.Not(flag("mirrors")))))
     yield Let(count("next_number"), next_number(lengths, _NUMBER, _WIDTH))
-    yield Let(flag("is_nearest"), sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD))
+    lacks_none = sp.Or(sp.Not(flag("has_two_ways")), flag("has_twin_now")) if has_twins else sp.true
+    yield Let(flag("is_nearest"), sp.And(sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD), lacks_none))
     is_last = sp.Or(flag("is_nearest"), sp.Eq(count("next_number"), 0))
     has_other = sp.And(sp.Gt(SIDE, 0), sp.Not(flag("is_nearest"))) if has_sides else sp.false
     yield Let(flag("side_ends"), sp.And(flag("start_ends"), is_last, has_other))
