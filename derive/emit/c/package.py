@@ -28,7 +28,8 @@ from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environme
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan.programs import START
-from derive.kinematics.scan.search import ONWARD, TWIN
+from derive.kinematics.scan.search import ONWARD
+from derive.kinematics.scan.twins import TWIN
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"

@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Joint, Mechanism
+from derive.description.mechanism import Mechanism
 from derive.equations.axes import reference_value
 from derive.ir.constants import BOUNDARY, CONVERGED, COST_OF_A_STALL, PASSES, STALLED
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
-from derive.ir.symbols import SCALE, SIDE, TRIED, called, count, flag, real
+from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
 from derive.kinematics.scan.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
 from derive.kinematics.scan.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
@@ -40,6 +40,18 @@ from derive.kinematics.scan.tried import (
     trials_begun,
     trials_go_on,
     turned_by_a_sixth,
+)
+from derive.kinematics.scan.twins import (
+    HAS_TWIN,
+    TWIN,
+    TWO_WAYS,
+    is_twin,
+    kept,
+    kept_now,
+    nearer_twin,
+    twin,
+    twin_now,
+    twins_now,
 )
 
 FIND_ROOT = "find_root"
@@ -69,9 +81,6 @@ _STAGE, _PLACE, _WIDTH = count("stage"), real("place"), real("width")
 _NUMBER, _SHORTEST, _ASIDE = count("number_of_start"), real("shortest"), real("aside")
 _BEFORE, _LEFT, _MIRRORED = real("error_before"), count("steps_left"), flag("was_mirrored")
 _NEAREST, _PASSES_LEFT = real("nearest"), count("passes_left")
-_HAS_TWIN, _TWO_WAYS = flag("has_twin"), flag("had_two_ways")
-TWIN = "twin"
-"""The output that tells whether there is a twin; those behind it are its joints."""
 _SETTLED = tuple(real(f"settled_{k}") for k in range(1, 7))
 """The last joint values of a part, on one side, from which the closure was met."""
 FIRST, LONGEST = sp.Float("1e-13"), sp.Rational(1, 2)
@@ -82,8 +91,6 @@ _ROOM = sp.Float("1e-6")
 """Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
 _SAME = sp.Float("1e-12")
 """Joint values this near (radians) are the same: from there the closure is met once. In a narrow part none are."""
-_APART = sp.Float("1e-5")
-"""Twins are further apart than this (radians and lengths, added)."""
 _MOVED = sp.Float("1e-8")
 """Joints are mirrored if the steps on the closure moved them by more than this (radians and lengths, added)."""
 _TURN = 2 * sp.pi
@@ -112,7 +119,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         *_looked(steps.look, arguments),
         *_tried(steps, arguments, lengths),
         *_met(steps, arguments, mechanism, joints),
-        *(_twins(mechanism.solved_joints) if eliminated else ()),
+        *(twins_now(mechanism.solved_joints, _NEAREST - AHEAD, _is_at(_SETTLING), _ROOM) if eliminated else ()),
         *_next_start(lengths, SIDE in steps.trial.inputs, has_twins=eliminated),
         *_ends(),
     )
@@ -125,9 +132,9 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
     }
     following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
     if eliminated:
-        begin |= {_HAS_TWIN: sp.false, _TWO_WAYS: sp.false}
-        following |= {_HAS_TWIN: flag("has_twin_now"), _TWO_WAYS: flag("has_two_ways")}
-        following |= {_twin(j): _twin_now(j) for j in joints}
+        begin |= {HAS_TWIN: sp.false, TWO_WAYS: sp.false}
+        following |= {HAS_TWIN: flag("has_twin_now"), TWO_WAYS: flag("has_two_ways")}
+        following |= {twin(j): twin_now(j) for j in joints}
     named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
     is_always = mechanism.search.where is None
     loop = Iterate(
@@ -141,7 +148,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         note="one step of the search",
     )
     held: dict[sp.Symbol, sp.Expr] = {j.symbol: reference_value(j) for j in mechanism.held_joints}
-    found = {j: Select(flag("takes_twin"), _twin_now(j), _kept_now(j)) if eliminated else _kept_now(j) for j in joints}
+    found = {j: Select(flag("takes_twin"), twin_now(j), kept_now(j)) if eliminated else kept_now(j) for j in joints}
     nearest = real("nearest_now")
     outputs = [
         Output(FOUND.name, sp.Lt(nearest, _FAR)),
@@ -149,23 +156,15 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         *_joints_out("found", mechanism, held | found),
     ]
     if eliminated:
-        twin = held | {j: _twin_now(j) for j in joints}
-        outputs += [Output(TWIN, flag("has_twin_now")), *_joints_out(TWIN, mechanism, twin)]
-    lets = _nearer_twin(mechanism.solved_joints) if eliminated else ()
+        others = held | {j: twin_now(j) for j in joints}
+        outputs += [Output(TWIN, flag("has_twin_now")), *_joints_out(TWIN, mechanism, others)]
+    lets = nearer_twin(mechanism.solved_joints, AHEAD, ONWARD) if eliminated else ()
     program = normalise(FIND_ROOT, (loop, *lets), outputs)
     return replace(program, summary="The joints at the root nearest to the start, or next ahead of it")
 
 
 def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.Expr]) -> list[Output]:
     return [Output(f"{word}_{j.symbol.name}", values[j.symbol]) for j in mechanism.joints]
-
-
-def _kept(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"kept_{joint.name}")
-
-
-def _kept_now(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"kept_now_{joint.name}")
 
 
 def _call(
@@ -246,52 +245,14 @@ def _met(
     is_new = sp.And(fits, within)
     if mechanism.search.is_eliminated:
         yield Let(flag("is_answer"), is_new)
-        yield from _is_twin(mechanism.solved_joints)
+        yield from is_twin(mechanism.solved_joints, _NEAREST, AHEAD)
         is_new = sp.And(flag("is_answer"), sp.Not(flag("is_twin")))
     yield Let(flag("is_better"), sp.And(is_new, sp.Lt(real("way_ahead"), _NEAREST)))
     yield Let(real("nearest_now"), Select(flag("is_better"), real("way_ahead"), _NEAREST))
     yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
     has_moved = sp.Gt(real("moved"), _MOVED)
-    yield from (Let(_kept_now(j), Select(flag("is_better"), j, _kept(j))) for j in joints)
+    yield from (Let(kept_now(j), Select(flag("is_better"), j, kept(j))) for j in joints)
     yield Let(flag("mirrors"), sp.And(flag("meets_pose"), sp.Not(flag(FITS)), sp.Not(_MIRRORED), has_moved))
-
-
-def _twin(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"other_{joint.name}")
-
-
-def _twin_now(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"other_now_{joint.name}")
-
-
-def _is_twin(joints: Sequence[Joint]) -> Iterator[Let]:
-    """Whether joints that fit stand where the nearest ones do, and are others: the first of both are kept."""
-    beside = sp.Le(sp.Abs(real("way_ahead") - _NEAREST), AHEAD)
-    ways = [sp.Abs(_between(j, j.symbol, _kept(j.symbol))) for j in joints]
-    yield Let(flag("is_twin"), sp.And(flag("is_answer"), beside, sp.Gt(sp.Add(*ways), _APART)))
-
-
-def _twins(joints: Sequence[Joint]) -> Iterator[Let]:
-    """The twin so far, and whether a root may have one."""
-    stays = sp.Or(sp.Not(flag("is_better")), sp.Gt(real("way_ahead"), _NEAREST - AHEAD))
-    yield Let(flag("has_twin_now"), sp.Or(flag("is_twin"), sp.And(_HAS_TWIN, stays)))
-    yield from (Let(_twin_now(j.symbol), Select(flag("is_twin"), j.symbol, _twin(j.symbol))) for j in joints)
-    settles = _is_at(_SETTLING)
-    yield Let(flag("has_two_ways"), sp.Or(sp.And(settles, sp.Le(ROOM, _ROOM)), sp.And(sp.Not(settles), _TWO_WAYS)))
-
-
-def _nearer_twin(joints: Sequence[Joint]) -> Iterator[Let]:
-    """Whether a twin is nearer to the reference."""
-    ways = [real(f"way_of_{word}") for word in ("kept", TWIN)]
-    for way, named in zip(ways, (_kept_now, _twin_now), strict=True):
-        yield Let(way, sp.Add(*[_between(j, named(j.symbol), reference_value(j)) ** 2 for j in joints]))
-    takes = sp.And(sp.Not(ONWARD), flag("has_twin_now"), sp.Lt(ways[1], ways[0] - AHEAD))
-    yield Let(flag("takes_twin"), takes)
-
-
-def _between(joint: Joint, value: sp.Expr, other: sp.Expr) -> sp.Expr:
-    """How far two values of a joint are apart, without turns; those of a slide in lengths of the machine."""
-    return Wrap(value - other) if joint.is_angle else (value - other) / SCALE
 
 
 def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[Let]:
@@ -365,7 +326,7 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
         mirrored = 2 * _begun(j) - j
         found[j] = Select(flag("is_near"), begun(j), Select(flag("mirrors"), mirrored, moved_to(j)))
         found[_begun(j)] = Select(flag("is_near"), begun(j), _begun(j))
-        found[_kept(j)] = _kept_now(j)
+        found[kept(j)] = kept_now(j)
     return found
 
 
