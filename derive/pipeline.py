@@ -41,7 +41,7 @@ LANGUAGES = (*WRITTEN, *(language.name for language in _OTHERS))
 _TITLES = {python.name: python.title, StructuredTextFiles.name: StructuredTextFiles.title} | {
     language.name: language.title for language in _OTHERS
 }
-_MOST_STEPS = 4_000_000
+_MOST_STEPS = 10_000_000
 """The work of the measurement of one machine, of all its stages (`derive.work`): some forty seconds."""
 Report = Callable[[str, str], None]
 """A listener for stages: it gets the name of a stage, and its result, which is empty when the stage begins."""

@@ -14,6 +14,8 @@ from derive.kinematics.kinematics import Kinematics
 
 _BEGIN = 2.6
 """How far ahead of the reference (radians) the way around begins."""
+_TWIN = "twin"
+"""The output that says whether a second solution stands at the same root; with those that begin with it."""
 _MOST = 24
 """More solutions than an arm has."""
 
@@ -32,13 +34,15 @@ def every_root(kin: Kinematics, given: Mapping[str, Array]) -> tuple[Array, NDAr
     going = np.ones(count, dtype=bool)
     axes: list[Array] = []
     answers: list[NDArray[np.bool_]] = []
-    while going.any() and len(axes) < _MOST:
+    while going.any() and len(axes) < 2 * _MOST:
         found, _ = run(find, {**values, "start": at})
         left = left - (found["away"] if axes else 0.0)
         going &= found["found"].astype(bool) & (left > 0.0)
         at = at + found["away"]
-        joints = {j.symbol.name: found[f"found_{j.symbol.name}"] for j in kin.mechanism.joints}
-        outputs, status = run(kin.from_joints, {**values, **joints})
-        axes.append(np.stack([outputs[j.axis.name] for j in kin.mechanism.joints], axis=1))
-        answers.append(np.asarray(going & (status == Status.OK), dtype=bool))
+        both = {"found": going} | ({_TWIN: going & found[_TWIN].astype(bool)} if _TWIN in found else {})
+        for word, are in both.items():
+            joints = {j.symbol.name: found[f"{word}_{j.symbol.name}"] for j in kin.mechanism.joints}
+            outputs, status = run(kin.from_joints, {**values, **joints})
+            axes.append(np.stack([outputs[j.axis.name] for j in kin.mechanism.joints], axis=1))
+            answers.append(np.asarray(are & (status == Status.OK), dtype=bool))
     return np.stack(axes), np.stack(answers)

@@ -29,6 +29,7 @@ from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.scan.programs import START
 from derive.kinematics.scan.search import ONWARD
+from derive.kinematics.scan.twins import TWIN
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"
@@ -224,6 +225,7 @@ def _every_root(kin: Kinematics) -> list[str]:
     program = search_of(kin)
     given = arguments_of(program, kin)
     places = f"{len(given)}, {given.index(START.name)}, {given.index(ONWARD.name)}, {len(kin.mechanism.joints)}"
+    places += f", {'true' if any(o.name == TWIN for o in program.outputs) else 'false'}"
     head = "const void *machine, const double *given, softkin_take take, void *context"
     inner = [
         f"const softkin_roots of = {{{function_name(program)}_of, machine, given, {places}}};",

@@ -151,7 +151,7 @@ def _all_joints(kin: Kinematics) -> list[str]:
     """The function that finds all roots of a search; its arguments are those of the search itself."""
     program = search_of(kin)
     given = arguments_of(program, kin)
-    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}"
+    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}, {len(kin.mechanism.joints)}"
     body = block(
         "function findAllJoints(k, given)", [f"return everyRoot({function_name(program.name)}, k, given, {places});"]
     )

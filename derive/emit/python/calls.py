@@ -44,9 +44,9 @@ def _nothing(call: Call) -> str:
     return tuple_of(["False" if is_condition(o.value) else "0.0" for o in call.program.outputs])
 
 
-def every_root(program: Program, given: Sequence[str]) -> list[str]:
+def every_root(program: Program, given: Sequence[str], joints: int) -> list[str]:
     """The lines that find all roots of a search on plain numbers."""
-    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}"
+    places = f"{given.index(START.name)}, {given.index(ONWARD.name)}, {joints}"
     return [f"return every_root(self._{program.name}, given, {places})"]
 
 

@@ -92,7 +92,7 @@ def _class_context(kin: Kinematics, arrays: Sequence[Method], straight_line: Unr
         "has_doubts": has_doubts(kin),
         "binds_in_loops": any(isinstance(s, Iterate) and s.otherwise is None for p in kin.shared for s in p.body),
         "margins": tuple(m.name for m in kin.margins),
-        "every_root": every_root(search_of(kin), arguments_of(search_of(kin), kin)) if kin.search_given else [],
+        "every_root": _every_root(kin),
         "chain": chain,
         "lines": lines_of(loop.shape) if (loop := drawn_loop(kin)) else (),
         "methods": [
@@ -169,6 +169,14 @@ def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
 def _without_reasons(method: Method) -> Method:
     """The method in the form that refuses with a status alone, without a reason."""
     return replace(method, program=without_reasons(method.program))
+
+
+def _every_root(kin: Kinematics) -> list[str]:
+    """The lines that find all roots; none where nothing is searched."""
+    if kin.search_given is None:
+        return []
+    program = search_of(kin)
+    return every_root(program, arguments_of(program, kin), len(kin.mechanism.joints))
 
 
 def _head(method: Method, prefix: str) -> str:

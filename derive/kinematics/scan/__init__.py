@@ -17,5 +17,6 @@ search: one loop, each pass of which makes one step of what the search is at
 slopes: every value of a program, with its derivative by one input
 starts: the starts in a part of the circle in which the wave may vanish
 tried: the trials in a part: the shortest length, the least residual next to a start
+twins: two solutions that stand at one root
 wave: the product, or the determinant of an elimination, as a sum of waves in the joint, and its rounding
 """

@@ -4,7 +4,8 @@ It looks around the circle, from the start to both sides, for parts in which the
 starts, on both sides of a step whose roots may join there. From a start the joint is settled on the wanted branch, and
 then the whole closure is met. If that leads to another branch, the joints are mirrored about where they began: two
 solutions that meet stand on both sides of it. The answer is the root nearest to the start; or the next one ahead of it,
-where all are asked for, one after the other.
+where all are asked for, one after the other. Where joints are eliminated, two solutions may stand at one root, each a
+twin of the other: then the answer is the one nearer to the reference, or both are.
 """
 
 from __future__ import annotations
@@ -39,6 +40,18 @@ from derive.kinematics.scan.tried import (
     trials_begun,
     trials_go_on,
     turned_by_a_sixth,
+)
+from derive.kinematics.scan.twins import (
+    HAS_TWIN,
+    TWIN,
+    TWO_WAYS,
+    is_twin,
+    kept,
+    kept_now,
+    nearer_twin,
+    twin,
+    twin_now,
+    twins_now,
 )
 
 FIND_ROOT = "find_root"
@@ -105,8 +118,9 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
     body = (
         *_looked(steps.look, arguments),
         *_tried(steps, arguments, lengths),
-        *_met(steps, arguments, joints, mechanism.search.joint.symbol),
-        *_next_start(lengths, SIDE in steps.trial.inputs),
+        *_met(steps, arguments, mechanism, joints),
+        *(twins_now(mechanism.solved_joints, _NEAREST - AHEAD, _is_at(_SETTLING), _ROOM) if eliminated else ()),
+        *_next_start(lengths, SIDE in steps.trial.inputs, has_twins=eliminated),
         *_ends(),
     )
     begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(most)}
@@ -117,6 +131,10 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         **dict.fromkeys(_SETTLED, _FAR),
     }
     following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
+    if eliminated:
+        begin |= {HAS_TWIN: sp.false, TWO_WAYS: sp.false}
+        following |= {HAS_TWIN: flag("has_twin_now"), TWO_WAYS: flag("has_two_ways")}
+        following |= {twin(j): twin_now(j) for j in joints}
     named = [Let(called(f"{n.name}_next", n), value) for n, value in following.items()]
     is_always = mechanism.search.where is None
     loop = Iterate(
@@ -129,23 +147,24 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         otherwise=None,
         note="one step of the search",
     )
-    found = {j: _kept_now(j) for j in joints} | {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    held: dict[sp.Symbol, sp.Expr] = {j.symbol: reference_value(j) for j in mechanism.held_joints}
+    found = {j: Select(flag("takes_twin"), twin_now(j), kept_now(j)) if eliminated else kept_now(j) for j in joints}
     nearest = real("nearest_now")
     outputs = [
         Output(FOUND.name, sp.Lt(nearest, _FAR)),
         Output(AWAY.name, Select(sp.Lt(nearest, _FAR), nearest, _ZERO)),
-        *(Output(f"found_{j.symbol.name}", found[j.symbol]) for j in mechanism.joints),
+        *_joints_out("found", mechanism, held | found),
     ]
-    program = normalise(FIND_ROOT, (loop,), outputs)
+    if eliminated:
+        others = held | {j: twin_now(j) for j in joints}
+        outputs += [Output(TWIN, flag("has_twin_now")), *_joints_out(TWIN, mechanism, others)]
+    lets = nearer_twin(mechanism.solved_joints, AHEAD, ONWARD) if eliminated else ()
+    program = normalise(FIND_ROOT, (loop, *lets), outputs)
     return replace(program, summary="The joints at the root nearest to the start, or next ahead of it")
 
 
-def _kept(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"kept_{joint.name}")
-
-
-def _kept_now(joint: sp.Symbol) -> sp.Symbol:
-    return real(f"kept_now_{joint.name}")
+def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.Expr]) -> list[Output]:
+    return [Output(f"{word}_{j.symbol.name}", values[j.symbol]) for j in mechanism.joints]
 
 
 def _call(
@@ -208,10 +227,11 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
 
 
 def _met(
-    steps: Steps, arguments: Sequence[sp.Symbol], joints: Sequence[sp.Symbol], searched: sp.Symbol
+    steps: Steps, arguments: Sequence[sp.Symbol], mechanism: Mechanism, joints: Sequence[sp.Symbol]
 ) -> Iterator[Let | Call]:
     """A step on the closure; where it is met, whether the joints fit, and are the nearest."""
-    here: dict[sp.Symbol, sp.Expr] = {j: j for j in joints}
+    assert mechanism.search is not None
+    searched, here = mechanism.search.joint.symbol, dict[sp.Symbol, sp.Expr]((j, j) for j in joints)
     yield _call(steps.step, arguments, {**here, IS_NEWTON: IS_NEWTON}, _is_at(_MEETING))
     is_last = sp.Or(sp.Gt(2 * ERROR, _BEFORE), sp.Le(_LEFT, 0))
     ends = sp.Or(sp.Le(ERROR, BOUNDARY / 100), sp.And(sp.Le(ERROR, CONVERGED), is_last), sp.Le(_LEFT, 0))
@@ -222,20 +242,26 @@ def _met(
     yield Let(real("way_ahead"), Select(ONWARD, Wrap(ahead - sp.pi) + sp.pi + AHEAD, sp.Abs(Wrap(ahead))))
     within = sp.Or(sp.Not(ONWARD), sp.And(sp.Gt(real("way_ahead"), AHEAD), sp.Lt(real("way_ahead"), _TURN - AHEAD)))
     fits = sp.And(flag("meets_pose"), flag(FITS))
-    yield Let(flag("is_better"), sp.And(fits, within, sp.Lt(real("way_ahead"), _NEAREST)))
+    is_new = sp.And(fits, within)
+    if mechanism.search.is_eliminated:
+        yield Let(flag("is_answer"), is_new)
+        yield from is_twin(mechanism.solved_joints, _NEAREST, AHEAD)
+        is_new = sp.And(flag("is_answer"), sp.Not(flag("is_twin")))
+    yield Let(flag("is_better"), sp.And(is_new, sp.Lt(real("way_ahead"), _NEAREST)))
     yield Let(real("nearest_now"), Select(flag("is_better"), real("way_ahead"), _NEAREST))
     yield Let(real("moved"), sp.Add(*[sp.Abs(j - _begun(j)) for j in joints]))
     has_moved = sp.Gt(real("moved"), _MOVED)
-    yield from (Let(_kept_now(j), Select(flag("is_better"), j, _kept(j))) for j in joints)
+    yield from (Let(kept_now(j), Select(flag("is_better"), j, kept(j))) for j in joints)
     yield Let(flag("mirrors"), sp.And(flag("meets_pose"), sp.Not(flag(FITS)), sp.Not(_MIRRORED), has_moved))
 
 
-def _next_start(lengths: int, has_sides: bool) -> Iterator[Let]:
+def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[Let]:
     """The start that follows, if one ends here."""
     is_unsettled = sp.And(flag("is_settled"), sp.Not(flag("is_near")))
     yield Let(flag("start_ends"), sp.Or(is_unsettled, sp.And(flag("steps_end"), sp.Not(flag("mirrors")))))
     yield Let(count("next_number"), next_number(lengths, _NUMBER, _WIDTH))
-    yield Let(flag("is_nearest"), sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD))
+    lacks_none = sp.Or(sp.Not(flag("has_two_ways")), flag("has_twin_now")) if has_twins else sp.true
+    yield Let(flag("is_nearest"), sp.And(sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD), lacks_none))
     is_last = sp.Or(flag("is_nearest"), sp.Eq(count("next_number"), 0))
     has_other = sp.And(sp.Gt(SIDE, 0), sp.Not(flag("is_nearest"))) if has_sides else sp.false
     yield Let(flag("side_ends"), sp.And(flag("start_ends"), is_last, has_other))
@@ -300,7 +326,7 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
         mirrored = 2 * _begun(j) - j
         found[j] = Select(flag("is_near"), begun(j), Select(flag("mirrors"), mirrored, moved_to(j)))
         found[_begun(j)] = Select(flag("is_near"), begun(j), _begun(j))
-        found[_kept(j)] = _kept_now(j)
+        found[kept(j)] = kept_now(j)
     return found
 
 

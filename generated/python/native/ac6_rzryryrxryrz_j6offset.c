@@ -2675,7 +2675,7 @@ static softkin_status find_root_of(const void *machine, const double *given, dou
 
 /* The joints at every root of the search, the nearest to the reference first. */
 static void find_every_root(const void *machine, const double *given, softkin_take take, void *context) {
-  const softkin_roots of = {find_root_of, machine, given, 40, 18, 15, 6};
+  const softkin_roots of = {find_root_of, machine, given, 40, 18, 15, 6, false};
   softkin_every_root(&of, take, context);
 }
 

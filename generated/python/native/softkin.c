@@ -773,19 +773,23 @@ static double distance_to(double difference) {
   return fabs(away - 2.0*PI*round(away/(2.0*PI)));
 }
 
-/* Put a root among others, the nearest first. */
-static void put(root *found, int count, const root *one) {
+/* Put a root among others, the nearest first; their number. */
+static int put(root *found, int count, double away, const double *values, int joints) {
   int k = count;
-  while (k > 0 && found[k - 1].away > one->away) {
+  while (k > 0 && found[k - 1].away > away) {
     found[k] = found[k - 1];
     k -= 1;
   }
-  found[k] = *one;
+  found[k].away = away;
+  for (int i = 0; i < joints; i += 1) {
+    found[k].joints[i] = values[i];
+  }
+  return count + 1;
 }
 
 /* All roots, found onward from an angle. */
 static int roots_from(const softkin_roots *of, double begin, root *found) {
-  double given[SOFTKIN_MOST_GIVEN], results[SOFTKIN_MOST_AXES + 2], left = 2.0*PI - SOFTKIN_AHEAD;
+  double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3], left = 2.0*PI - SOFTKIN_AHEAD;
   int count = 0;
   for (int i = 0; i < of->count; i += 1) {
     given[i] = of->given[i];
@@ -801,12 +805,12 @@ static int roots_from(const softkin_roots *of, double begin, root *found) {
       return count;
     }
     given[of->start] += results[1];
-    root one = {.away = distance_to(given[of->start] - of->given[of->start])};
-    for (int i = 0; i < of->joints; i += 1) {
-      one.joints[i] = results[i + 2];
+    const double away = distance_to(given[of->start] - of->given[of->start]);
+    const double *twin = &results[2 + of->joints];
+    count = put(found, count, away, &results[2], of->joints);
+    if (of->has_twins && twin[0] != 0.0 && count < MOST_ROOTS) {
+      count = put(found, count, away, &twin[1], of->joints);
     }
-    put(found, count, &one);
-    count += 1;
   }
   return count;
 }

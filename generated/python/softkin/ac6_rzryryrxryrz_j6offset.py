@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 6824a5fcc8694bde"
+    KEY = "ac6_rzryryrxryrz_j6offset 04b03c4e5437d6b9"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -3390,7 +3390,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
 
     def _all_joints(self, given: Values) -> list[Reals]:
         """The joints at every root of a root search."""
-        return every_root(self._find_root, given, 18, 15)
+        return every_root(self._find_root, given, 18, 15, 6)
 
     def _chain(self) -> tuple[Link, ...]:
         """The chain as it is described, from the base to the frame."""

@@ -4,10 +4,11 @@ import { AHEAD, ELSEWHERE } from "./constants.js";
 
 /**
  * The joints at all roots that fit, the nearest to the start first. find: the program that finds a root: whether there
- * is one, how far it is from the start, and the joints. start, onward: the places of the start among its arguments, and
- * of the flag that asks for the next root.
+ * is one, how far it is from the start, and the joints; some tell also whether other joints stand there, too, and these.
+ * start, onward: the places of the start among its arguments, and of the flag that asks for the next root. count: that
+ * of the joints.
  */
-export function everyRoot(find, k, given, start, onward) {
+export function everyRoot(find, k, given, start, onward, count) {
   const reference = given[start];
   const turn = 2.0 * Math.PI;
   for (const begin of [reference + ELSEWHERE, reference + ELSEWHERE + 1.0]) {
@@ -18,11 +19,13 @@ export function everyRoot(find, k, given, start, onward) {
       const values = [...given];
       values[start] = at;
       values[onward] = true;
-      const [there, away, ...joints] = find(k, values);
+      const [there, away, ...results] = find(k, values);
       left -= found.length > 0 ? away : 0.0;
       if (!there || left <= 0.0) break;
       at += away;
-      found.push({ away: distance(at - reference), joints });
+      const one = { away: distance(at - reference), joints: results.slice(0, count) };
+      found.push(one);
+      if (results[count]) found.push({ ...one, joints: results.slice(count + 1) });
     }
     if (found.length > 0) return found.sort((a, b) => a.away - b.away).map((one) => one.joints);
   }

@@ -11,10 +11,11 @@ from softkin._constants import AHEAD, ELSEWHERE
 Values = tuple[Any, ...]
 
 
-def every_root(find: Callable[[Values], Any], given: Values, start: int, onward: int) -> list[Values]:
+def every_root(find: Callable[[Values], Any], given: Values, start: int, onward: int, joints: int) -> list[Values]:
     """The joints (radians, the user's unit) at all roots that fit, the nearest to the start first.
 
-    find: the program that finds a root: whether there is one, how far it is from the start, and the joints.
+    find: the program that finds a root: whether there is one, how far it is from the start, and the joints; some tell
+    also whether other joints stand there, too, and these. joints: their number.
     given: its arguments; start, onward: the places among them of the start, and of the flag that asks for the next root
     """
     reference = given[start]
@@ -26,11 +27,13 @@ def every_root(find: Callable[[Values], Any], given: Values, start: int, onward:
         while True:
             values = list(given)
             values[start], values[onward] = at, True
-            there, away, *joints = find(tuple(values))
+            there, away, *results = find(tuple(values))
             left -= away if found else 0.0
             if not there or left <= 0.0:
                 break
             at += away
-            found.append((at, tuple(joints)))
+            found.append((at, tuple(results[:joints])))
+            if any(results[joints : joints + 1]):
+                found.append((at, tuple(results[joints + 1 :])))
     found.sort(key=lambda one: abs((one[0] - reference - AHEAD + pi) % (2.0 * pi) - pi))
-    return [joints for _, joints in found]
+    return [one for _, one in found]

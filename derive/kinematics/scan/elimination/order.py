@@ -32,7 +32,8 @@ PRODUCTS = 8
 EQUATIONS = 6
 """Equations without a and b."""
 _SHAPES = ((3, 2), (3, 3))
-_POSES, _SELECTIONS, _ANGLES, _BEGIN = 6, 40, 32, 0.1
+_POSES, _POSES_OF_EACH, _SELECTIONS, _ANGLES, _BEGIN = 6, 2, 40, 32, 0.1
+_RIGHT_ANGLES = (0.0, 90.0, 180.0, -90.0)
 _REGULAR, _SINGULAR, _NOTHING = 1e-8, 1e-12, 1e-10
 _POOR = 0.1
 """The share of the poses by which a choice is judged: those where roots are told worst."""
@@ -99,10 +100,21 @@ def elimination_of(mechanism: Mechanism, searched: Joint | None = None) -> Elimi
     ring = ring_of(mechanism)
     if ring is None:
         return None
-    values: dict[str, Array] = samples_of(mechanism, pose_at_axes(mechanism), _POSES)
+    values = _samples(mechanism)
     for let in (*fixed_lets(mechanism), *ring.lets):
         values[let.name.name] = np.asarray(evaluate(let.value, values))
     return best_order(ring, values, searched)
+
+
+def _samples(mechanism: Mechanism) -> dict[str, Array]:
+    """Poses of random machines. A joint that is held stands anywhere, and as often at each right angle: there axes may
+    be parallel or meet, and it stays there.
+    """
+    is_held = any(j.is_angle for j in mechanism.held_joints)
+    each = _POSES_OF_EACH if is_held else _POSES
+    angles = (None, *_RIGHT_ANGLES) if is_held else (None,)
+    parts = [samples_of(mechanism, pose_at_axes(mechanism), each, angle) for angle in angles]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def best_order(ring: Ring, values: Mapping[str, Array], searched: Joint | None = None) -> Elimination | None:

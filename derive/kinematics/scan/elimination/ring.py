@@ -139,7 +139,8 @@ def _fixed(mechanism: Mechanism, factor: Factor, lets: dict[sp.Symbol, Let]) -> 
         half = turn(axis, 1 - 2 * amount, sp.Integer(0))
         return Fixed(half, half)
     found, (cosine_of, sine_of) = named_trigonometry(mechanism, [sp.cos(amount), sp.sin(amount)])
-    lets.update({let.name: let for let in found})
+    read = cosine_of.free_symbols | sine_of.free_symbols  # a turn by a held joint and an angle names all joints
+    lets.update({let.name: let for let in found if let.name in read})
     return Fixed(turn(axis, cosine_of, sine_of), turn(axis, cosine_of, -sine_of))
 
 
