@@ -761,6 +761,7 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
 /* ---- all roots of a search along one joint: the next one ahead, again and again around the circle ---- */
 
 #define MOST_ROOTS 48
+#define LONGEST 0.5 /* the longest step (radians) where every joint value is a root */
 
 typedef struct {
   double away, joints[SOFTKIN_MOST_AXES];
@@ -786,32 +787,56 @@ static int put(root *found, int count, double away, const double *values, int jo
   return count + 1;
 }
 
-/* All roots, found onward from an angle. */
+/* Put the root that a search found among others, and its twin; their number. */
+static int put_all(const softkin_roots *of, root *found, int count, double away, const double *results) {
+  const double *twin = &results[2 + of->joints];
+  count = put(found, count, away, &results[2], of->joints);
+  if (of->has_twins && twin[0] != 0.0 && count < MOST_ROOTS) {
+    count = put(found, count, away, &twin[1], of->joints);
+  }
+  return count;
+}
+
+/* The root that is nearest to the start, among others where the arm moves while its tool rests; their number. */
+static int with_nearest(const softkin_roots *of, double *given, double *results, root *found, int count) {
+  given[of->onward] = 0.0;
+  given[of->start] = of->given[of->start];
+  if (count == MOST_ROOTS || of->find(of->machine, given, results, NULL) != SOFTKIN_OK || results[0] == 0.0) {
+    return count;
+  }
+  return put_all(of, found, count, results[1], results);
+}
+
+/* All roots, found onward from an angle. Where the arm moves while its tool rests, every joint value is a root: a
+   stretch of them has one, and the nearest to the start is added. */
 static int roots_from(const softkin_roots *of, double begin, root *found) {
-  double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3], left = 2.0*PI - SOFTKIN_AHEAD;
-  int count = 0;
+  double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3], left = 2.0*PI - SOFTKIN_AHEAD, skip = 0.0;
+  int count = 0, moves = 0;
   for (int i = 0; i < of->count; i += 1) {
     given[i] = of->given[i];
   }
   given[of->onward] = 1.0;
   given[of->start] = begin;
-  while (count < MOST_ROOTS) {
+  for (int searches = 0; searches < MOST_ROOTS && count < MOST_ROOTS; searches += 1) {
     if (of->find(of->machine, given, results, NULL) != SOFTKIN_OK || results[0] == 0.0) {
-      return count;
+      break;
     }
     left -= count > 0 ? results[1] : 0.0;
     if (left <= 0.0) {
-      return count;
+      break;
     }
     given[of->start] += results[1];
-    const double away = distance_to(given[of->start] - of->given[of->start]);
-    const double *twin = &results[2 + of->joints];
-    count = put(found, count, away, &results[2], of->joints);
-    if (of->has_twins && twin[0] != 0.0 && count < MOST_ROOTS) {
-      count = put(found, count, away, &twin[1], of->joints);
+    if (count > 0 && results[1] < 2.0*SOFTKIN_AHEAD) { /* roots without end, or one as good as triple: nothing new is near */
+      skip = fmin(fmax(4.0*skip, SOFTKIN_AHEAD), LONGEST);
+      given[of->start] += skip;
+      left -= skip;
+      moves = moves || skip == LONGEST;
+    } else {
+      skip = 0.0;
+      count = put_all(of, found, count, distance_to(given[of->start] - of->given[of->start]), results);
     }
   }
-  return count;
+  return moves ? with_nearest(of, given, results, found, count) : count;
 }
 
 void softkin_every_root(const softkin_roots *of, softkin_take take, void *context) {

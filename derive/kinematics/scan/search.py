@@ -89,6 +89,8 @@ _NEAR = sp.Float("1e-3")
 """In a narrow part steps on the closure begin only where the residual of the branch is at most this."""
 _ROOM = sp.Float("1e-6")
 """Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
+_SLOW = sp.Float("0.9")
+"""Where a damped step leaves more than this share of the error, one of Newton's method follows."""
 _SAME = sp.Float("1e-12")
 """Joint values this near (radians) are the same: from there the closure is met once. In a narrow part none are."""
 _MOVED = sp.Float("1e-8")
@@ -314,7 +316,7 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
         _ASIDE: real("aside_now"),
         _BEFORE: Select(is_new, _FAR, ERROR),
         _LEFT: Select(is_new, sp.Integer(PASSES), _LEFT - step),
-        IS_NEWTON: sp.And(*map(sp.Not, (flag("is_near"), flag("mirrors"), IS_NEWTON)), stalls),
+        IS_NEWTON: sp.And(*map(sp.Not, (flag("is_near"), flag("mirrors"), IS_NEWTON)), sp.Gt(ERROR, _SLOW * _BEFORE)),
         _MIRRORED: sp.And(sp.Not(flag("is_near")), sp.Or(flag("mirrors"), _MIRRORED)),
         _NEAREST: real("nearest_now"),
         _PASSES_LEFT: _PASSES_LEFT - 1,

@@ -12,7 +12,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.ir.passes import normalise
-from derive.ir.primitives import Root, Select, ToReal
+from derive.ir.primitives import Root, Select, ToReal, larger
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import TRIED, count, flag, real
 from derive.kinematics.scan.programs import Trial, roots_named
@@ -26,7 +26,7 @@ REMAINDER, RATE, ROOM, GROWTH = map(real, ("remainder", "rate", "room_of_trial",
 SETTLED = real("settled")
 """Where Newton's method ends."""
 WAY_NOW, NEWTON_NEXT, BEND_NOW, SHORTEST_NEXT = map(real, ("way_now", "newton_place", "bend_now", "shortening_place"))
-_LEAST, _WAY = real("least"), real("way")
+_LEAST, _WAY, _MOST_ROOM = real("least"), real("way"), real("most_room")
 _LAST, _BEFORE, _BEND = real("last"), real("growth_before"), real("bend")
 _ASIDE = sp.Float("1.7")
 """The tangent of 60 degrees."""
@@ -63,14 +63,17 @@ def try_program(trial: Trial) -> Program:
 def trials_begun(place: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
     """The state of the trials at their first one."""
     zeros = dict.fromkeys((TRIALS, _WAY, _BEFORE, _BEND), _ZERO)
-    return {AT: place, BEST: place, _LAST: place, _LEAST: _MOST, **zeros}
+    return {AT: place, BEST: place, _LAST: place, _LEAST: _MOST, _MOST_ROOM: _ZERO, **zeros}
 
 
 def better(is_shortest: sp.Basic, length: sp.Expr) -> Iterator[Let]:
-    """Whether a trial is the best so far: where the length is shortest, or where the least remains."""
+    """Whether a trial is the best so far: where the length is shortest, or where the least remains. From within reach
+    none goes beyond its end, where a residual of what is nearest may vanish, too.
+    """
     size, is_less = real("size"), flag("is_less")
     yield Let(size, Select(is_shortest, length, sp.Abs(REMAINDER)))
-    yield Let(is_less, sp.Lt(size, _LEAST))
+    stays = sp.Or(sp.Le(_MOST_ROOM, 0), sp.Gt(ROOM, 0), is_shortest)
+    yield Let(is_less, sp.And(sp.Lt(size, _LEAST), stays))
     yield Let(BEST_NOW, Select(is_less, AT, BEST))
     yield Let(LEAST_NOW, Select(is_less, size, _LEAST))
 
@@ -123,6 +126,7 @@ def trials_go_on(is_shortest: sp.Basic) -> dict[sp.Symbol, sp.Expr]:
         TRIALS: TRIALS + 1,
         BEST: BEST_NOW,
         _LEAST: LEAST_NOW,
+        _MOST_ROOM: larger(_MOST_ROOM, ROOM),
         _WAY: WAY_NOW,
         _LAST: AT,
         _BEFORE: GROWTH,

@@ -1349,6 +1349,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   int trials = 0;
   double best = 0.0;
   double least = 0.0;
+  double most_room = 0.0;
   double way = 0.0;
   double last = 0.0;
   double growth_before = 0.0;
@@ -1384,11 +1385,11 @@ static softkin_status find_root(const void *machine, const double *given, double
       nearest_now, place_next, width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2,
       aside_now, error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
       at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
-      value_in_place_of_start, place_of_start, at_next, best_next, least_next, way_next, last_next,
-      growth_before_next, bend_next, settled_1_next, settled_2_next, settled_3_next, settled_4_next,
-      settled_5_next, settled_6_next, q1_next, met_from_q1_next, kept_now_q1, q2_next, met_from_q2_next,
-      kept_now_q2, q3_next, met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next, kept_now_q4, q5_next,
-      met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
+      value_in_place_of_start, place_of_start, at_next, best_next, least_next, most_room_next, way_next,
+      last_next, growth_before_next, bend_next, settled_1_next, settled_2_next, settled_3_next,
+      settled_4_next, settled_5_next, settled_6_next, q1_next, met_from_q1_next, kept_now_q1, q2_next,
+      met_from_q2_next, kept_now_q2, q3_next, met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next,
+      kept_now_q4, q5_next, met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
       steps_left_next, passes_left_next, trials_next;
   bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends,
@@ -1430,7 +1431,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     growth_3 = results_of_2[8];
     size = stage == 1 ? (number_of_start > 15 ? length_3 : (number_of_start > 12 ? length_2 : length_1))
         : fabs(remainder);
-    is_less = size < least;
+    is_less = (size < least) && ((stage == 1) || (most_room <= 0.0) || (room_of_trial > 0.0));
     best_now = is_less ? at : best;
     way_now = is_less ? real_of_direction*remainder/(fabs(rate) > 0.0 ? rate : 1e30) : 0.25*way;
     best_now_minus_way_now = best_now - way_now;
@@ -1541,7 +1542,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     aside_now = is_shortest ? (bend_now > 0.0 ? 1.7*least_now/softkin_root(bend_now_2) : 0.0) : aside;
     error_before_next = is_near || mirrors ? 9.0 : error;
     steps_left_next = is_near || mirrors ? 64 : steps_left + (error > 0.999*error_before ? -8 : -1);
-    is_newton_next = (!is_near) && (!is_newton) && (!mirrors) && (error > 0.999*error_before);
+    is_newton_next = (!is_near) && (!is_newton) && (!mirrors) && (error > 0.9*error_before);
     was_mirrored_next = (!is_near) && (mirrors || was_mirrored);
     passes_left_next = passes_left - 1;
     spread = 0.25*width;
@@ -1572,6 +1573,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     trials_next = begins || is_shortest ? 0 : 1 + trials;
     best_next = begins || is_shortest ? place_of_start : best_now;
     least_next = begins || is_shortest ? 1e30 : least_now;
+    most_room_next = begins || is_shortest ? 0.0 : (most_room > room_of_trial ? most_room : room_of_trial);
     way_next = begins || is_shortest ? 0.0 : way_now;
     last_next = begins || is_shortest ? place_of_start : at;
     growth_before_next = begins || is_shortest ? 0.0 : growth;
@@ -1621,6 +1623,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     trials = trials_next;
     best = best_next;
     least = least_next;
+    most_room = most_room_next;
     way = way_next;
     last = last_next;
     growth_before = growth_before_next;

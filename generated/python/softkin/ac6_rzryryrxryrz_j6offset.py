@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 04b03c4e5437d6b9"
+    KEY = "ac6_rzryryrxryrz_j6offset 461d6c2337b47fc5"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1781,6 +1781,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             trials,
             best,
             least,
+            most_room,
             way,
             last,
             growth_before,
@@ -1826,6 +1827,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             4000,
             0.0,
             0,
+            0.0,
             0.0,
             0.0,
             0.0,
@@ -1935,7 +1937,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if stage == 1
                 else abs(remainder)
             )
-            is_less = size < least
+            is_less = (size < least) and ((stage == 1) or (most_room <= 0.0) or (room_of_trial > 0.0))
             best_now = at if is_less else best
             way_now = real_of_direction * remainder / (rate if abs(rate) > 0.0 else 1e30) if is_less else 0.25 * way
             best_now_minus_way_now = best_now - way_now
@@ -2140,7 +2142,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             error_before_next = 9.0 if is_near or mirrors else error
             steps_left_next = 64 if is_near or mirrors else steps_left + (-8 if error > 0.999 * error_before else -1)
-            is_newton_next = (not is_near) and (not is_newton) and (not mirrors) and (error > 0.999 * error_before)
+            is_newton_next = (not is_near) and (not is_newton) and (not mirrors) and (error > 0.9 * error_before)
             was_mirrored_next = (not is_near) and (mirrors or was_mirrored)
             passes_left_next = passes_left - 1
             spread = 0.25 * width
@@ -2226,6 +2228,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             trials_next = 0 if begins or is_shortest else 1 + trials
             best_next = place_of_start if begins or is_shortest else best_now
             least_next = 1e30 if begins or is_shortest else least_now
+            most_room_next = 0.0 if begins or is_shortest else max(room_of_trial, most_room)
             way_next = 0.0 if begins or is_shortest else way_now
             last_next = place_of_start if begins or is_shortest else at
             growth_before_next = 0.0 if begins or is_shortest else growth
@@ -2274,6 +2277,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             trials = trials_next
             best = best_next
             least = least_next
+            most_room = most_room_next
             way = way_next
             last = last_next
             growth_before = growth_before_next

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8809
+    VALUES = 8841
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1694,6 +1694,7 @@ class ArrayPrograms(Programs):
             trials,
             best,
             least,
+            most_room,
             way,
             last,
             growth_before,
@@ -1739,6 +1740,7 @@ class ArrayPrograms(Programs):
             4000,
             0.0,
             0,
+            0.0,
             0.0,
             0.0,
             0.0,
@@ -1836,7 +1838,7 @@ class ArrayPrograms(Programs):
                 select(number_of_start > 15, length_3, select(number_of_start > 12, length_2, length_1)),
                 absolute(remainder),
             )
-            is_less = size < least
+            is_less = (size < least) & ((stage == 1) | (most_room <= 0.0) | (room_of_trial > 0.0))
             best_now = select(is_less, at, best)
             way_now = select(
                 is_less, real_of_direction * remainder / select(absolute(rate) > 0.0, rate, 1e30), 0.25 * way
@@ -2035,7 +2037,7 @@ class ArrayPrograms(Programs):
             error_before_next = select(is_near | mirrors, 9.0, error)
             steps_left_next = select(is_near | mirrors, 64, steps_left + select(error > 0.999 * error_before, -8, -1))
             is_newton_next = (
-                (opposite(is_near)) & (opposite(is_newton)) & (opposite(mirrors)) & (error > 0.999 * error_before)
+                (opposite(is_near)) & (opposite(is_newton)) & (opposite(mirrors)) & (error > 0.9 * error_before)
             )
             was_mirrored_next = (opposite(is_near)) & (mirrors | was_mirrored)
             passes_left_next = passes_left - 1
@@ -2118,6 +2120,9 @@ class ArrayPrograms(Programs):
             trials_next = select(begins | is_shortest, 0, 1 + trials)
             best_next = select(begins | is_shortest, place_of_start, best_now)
             least_next = select(begins | is_shortest, 1e30, least_now)
+            most_room_next = select(
+                begins | is_shortest, 0.0, select(most_room > room_of_trial, most_room, room_of_trial)
+            )
             way_next = select(begins | is_shortest, 0.0, way_now)
             last_next = select(begins | is_shortest, place_of_start, at)
             growth_before_next = select(begins | is_shortest, 0.0, growth)
@@ -2168,6 +2173,7 @@ class ArrayPrograms(Programs):
                 trials,
                 best,
                 least,
+                most_room,
                 way,
                 last,
                 growth_before,
@@ -2217,6 +2223,7 @@ class ArrayPrograms(Programs):
                     trials,
                     best,
                     least,
+                    most_room,
                     way,
                     last,
                     growth_before,
@@ -2265,6 +2272,7 @@ class ArrayPrograms(Programs):
                     trials_next,
                     best_next,
                     least_next,
+                    most_room_next,
                     way_next,
                     last_next,
                     growth_before_next,
