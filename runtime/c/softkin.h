@@ -318,9 +318,9 @@ typedef struct {
   double middle;
 } softkin_window;
 
-/** The program that finds a root: whether there is one, how far it is from the start, and the joints, with twins also
- * whether other joints stand there, too, and these; and its arguments, with the places of the start among them, and of
- * the flag that asks for the next root. */
+/** The program that finds a root: whether there is one, how far it is from the start, and the joints; with
+ * twins also whether other joints stand there, too, and these. And its arguments, with the places of the
+ * start among them, and of the flag that asks for the next root. */
 typedef struct {
   softkin_status (*find)(const void *machine, const double *given, double *results, softkin_refusal *why);
   const void *machine;

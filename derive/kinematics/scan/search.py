@@ -121,7 +121,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
         *_looked(steps.look, arguments),
         *_tried(steps, arguments, lengths),
         *_met(steps, arguments, mechanism, joints),
-        *(twins_now(mechanism.solved_joints, _NEAREST - AHEAD, _is_at(_SETTLING), _ROOM) if eliminated else ()),
+        *(twins_now(mechanism.solved_joints, _NEAREST - AHEAD, _is_at(_SETTLING), _NEAR) if eliminated else ()),
         *_next_start(lengths, SIDE in steps.trial.inputs, has_twins=eliminated),
         *_ends(),
     )

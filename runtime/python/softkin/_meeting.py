@@ -137,6 +137,20 @@ class Meeting:
         return max((abs(a - b) for a, b in zip(axes, others, strict=True)), default=0.0) > ANOTHER_TURN
 
     def _met(self, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At | Diagnosis:
+        """The true machine where it meets the frame on the branch: at last from all solutions of the nominal machine.
+        Of a searched machine a branch may have several; and next to where branches meet one may be on the other branch.
+        """
+        found = self._met_on_branch(target, signs, turns, reference)
+        if not isinstance(found, Diagnosis) or found.status is not Status.UNREACHABLE:
+            return found
+        for _, axes in self.machine.nominal._every_solution(*target, self.machine._actual(reference)):
+            if not isinstance(axes, Diagnosis):
+                at = self._stepped(self._at(self.machine._commanded(axes), target), target)
+                if self._is_met(at, signs):
+                    return at
+        return found
+
+    def _met_on_branch(self, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At | Diagnosis:
         """The true machine where it meets the frame on the branch: from the reference, if that is near; so a path goes
         on where two solutions of a branch are near to each other.
         """
