@@ -194,6 +194,11 @@ class Recorder:
         """Home, the two programs with a way between them, and a way by hand."""
         self.driver.switch_on()
         self.stage("home", self.driver.home)
+        if plan["tool"]:
+            upright, longer = plan["tool"]
+            self.driver.bring(upright, BRING_SPEED)
+            self.driver.line(longer)
+            self.driver.bring(plan["first"], BRING_SPEED)
         hal.set_p("sampler.0.enable", "1")
         self.stage("first", self.driver.run, "first.ngc")
         self.stage("bring", self.driver.bring, plan["second"], BRING_SPEED)
