@@ -6,5 +6,6 @@
 * `settings` are the INI and HAL files of one; `session` runs it, from the start of LinuxCNC to the record.
 * `display` runs as LinuxCNC's screen, inside alone: it homes, runs programs, and records.
 * `twin` holds the record against the Python package, with `poses` (frames, and the way that a program describes).
+* `documented` runs the configuration of the guide.
 * `verdict` judges, `table` prints.
 """

@@ -20,7 +20,8 @@ from prove.linuxcnc.packages import LinuxCNC
 from prove.linuxcnc.poses import Reals
 from prove.linuxcnc.room import run_inside
 
-_DISPLAY = Path(__file__).with_name("display.py")
+DISPLAY = Path(__file__).with_name("display.py")
+"""What LinuxCNC runs as its screen."""
 BESIDE = 10.0
 """Millimetres in X and Y that a machine moves to show that it goes on; in identity each joint, in its own unit."""
 _WRONG = 1e12
@@ -82,7 +83,7 @@ def _write(machine: Machine, module: Module, work: Path, home: Mapping[str, floa
     """All files that LinuxCNC reads."""
     optional = "".join(f"#define SOFTKIN_WITH_{part} 1\n" for part in ("JACOBIAN", "FRAMES"))
     (work / module.file.name).write_text(optional + module.file.read_text(encoding="utf-8"), encoding="utf-8")
-    shutil.copy(_DISPLAY, work / "display.py")
+    shutil.copy(DISPLAY, work / "display.py")
     (work / "display.py").chmod(0o755)
     texts = {
         "machine.ini": settings.ini(machine, module.name, home),
