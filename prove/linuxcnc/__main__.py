@@ -12,8 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import date
 from pathlib import Path
 
-from prove.linuxcnc.machines import MACHINES, Machine
-from prove.linuxcnc.modules import NotWritten, written
+from prove.linuxcnc import documented
+from prove.linuxcnc.machines import MACHINES, SCARA, Machine
+from prove.linuxcnc.modules import NotWritten, written, written_as
 from prove.linuxcnc.packages import CannotRun, LinuxCNC, require_computer, unpacked
 from prove.linuxcnc.room import require_room
 from prove.linuxcnc.session import run
@@ -51,6 +52,10 @@ def main(arguments: list[str]) -> int:
     print(f"LinuxCNC {linuxcnc.version}, {date.today()}, without real time and without hardware:\n")
     print(table(verdicts))
     faults = [f"{one.says}: {fault}" for one in verdicts for fault in one.faults]
+    if SCARA in machines:
+        ill = list(documented.faults(written_as(SCARA, folder / "modules"), linuxcnc, folder / "work" / "documented"))
+        faults += ill
+        print(f"\nThe configuration of docs/LINUXCNC.md {'fails' if ill else 'runs to the end of its program'}.")
     for fault in faults:
         print(fault, file=sys.stderr)
     return FAILED if faults else 0

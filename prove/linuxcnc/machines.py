@@ -1,4 +1,4 @@
-"""Six machines, what each is asked to do in LinuxCNC, and where it has to refuse."""
+"""Seven machines, what each is asked to do in LinuxCNC, and where it has to refuse."""
 
 from __future__ import annotations
 
@@ -54,8 +54,17 @@ class Machine:
     """Which of its joints are lengths."""
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Limits that the module is given."""
-    letters_are_axes: bool = False
-    """A five-axis machine: A, B, C are the values of its rotary axes, else roll, pitch and yaw of the frame."""
+    turns: tuple[tuple[str, float], ...] = ()
+    """Of a five-axis machine, whose A, B, C are the values of its rotary axes: the turns from the work to the tool,
+    each a letter with its factor, or X, Y, Z with degrees that are constant. Else A, B, C are roll, pitch and yaw.
+    """
+    tool: tuple[str, float] | None = None
+    """The parameter that is the length of its tool, and by how much G43.1 makes it longer."""
+
+    @property
+    def raised(self) -> float:
+        """What LinuxCNC adds to Z for the tool."""
+        return 0.0 if self.tool is None else self.tool[1]
 
 
 def g0(**to: float) -> Move:
@@ -163,7 +172,7 @@ TRUNNION = Machine(
     letters="XYZAC",
     linear=(0, 1, 2),
     limits={"A": (-100.0, 100.0)},
-    letters_are_axes=True,
+    turns=(("C", -1.0), ("A", -1.0)),
     first=Stand(
         (0.0, 0.0, 80.0, 30.0, 40.0),
         (
@@ -177,6 +186,35 @@ TRUNNION = Machine(
         (g1(x=15, y=-10, z=10, a=-20, c=90), g2(-15, 10, x=-15, y=10, a=-50), g0(x=0, y=5, z=30, a=-70, c=-20)),
     ),
     unreachable={"A": -130.0},
+)
+NUTATING = Machine(
+    says="nutating head, five axes",
+    mechanism="Softkin_NutatingHead_CB",
+    sizes={"fork_offset": 30.0, "head_offset": 15.0, "pivot_length": 150.0, "nutation": 45.0},
+    letters="XYZCB",
+    linear=(0, 1, 2),
+    turns=(("C", 1.0), ("X", 45.0), ("B", 1.0), ("X", -45.0)),
+    tool=("pivot_length", 60.0),
+    first=Stand(
+        (100.0, 50.0, 300.0, 30.0, 40.0),
+        (
+            g1(x=140, b=80, c=60),
+            g1(x=160, y=90, b=60, c=-20),
+            g2(40, -30, x=200, y=110, b=95, c=40),
+            g0(z=40, b=30, c=10),
+        ),
+    ),
+    second=Stand(
+        (120.0, 60.0, 310.0, 20.0, -60.0),
+        (
+            g1(x=140, b=-80, c=-20),
+            g1(x=150, y=90, z=60, b=-55),
+            g2(-20, 15, x=130, y=130, c=30),
+            g0(x=130, y=70, z=80, b=-70),
+        ),
+    ),
+    unreachable={"B": -130.0},
+    limits={"B": (-100.0, 100.0)},
 )
 HEXAPOD = Machine(
     says="hexapod",
@@ -210,4 +248,4 @@ HEXAPOD = Machine(
     ),
     unreachable={"Z": 1000.0},
 )
-MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION, HEXAPOD)
+MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION, NUTATING, HEXAPOD)

@@ -54,9 +54,9 @@ def written(machines: Sequence[Machine], folder: Path, fresh: bool) -> dict[str,
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise NotWritten(done.stderr or done.stdout)
-    return {name: _module(name, folder / "linuxcnc") for name in names}
+    return {machine.mechanism: written_as(machine, folder) for machine in machines}
 
 
-def _module(mechanism: str, folder: Path) -> Module:
-    """The one of a mechanism: its name is that of the mechanism without what is before the first underscore."""
-    return Module(folder / f"{mechanism.partition('_')[2].lower()}_kins.c")
+def written_as(machine: Machine, folder: Path) -> Module:
+    """The one of a machine: its name is that of the mechanism without what is before the first underscore."""
+    return Module(folder / "linuxcnc" / f"{machine.mechanism.partition('_')[2].lower()}_kins.c")

@@ -18,9 +18,14 @@ _POINT = 1e-12
 def frames(machine: Machine, poses: Reals) -> tuple[Reals, Reals]:
     """Positions (N, 3) and rotations (N, 3, 3) of poses (N, 6): X, Y, Z, A, B, C."""
     a, b, c = (np.radians(poses[:, k]) for k in (3, 4, 5))
-    if machine.letters_are_axes:  # the tool seen from a workpiece that axis A tilts and axis C turns
-        return poses[:, :3], _about(2, -c) @ _about(0, -a)
-    return poses[:, :3], _about(2, c) @ _about(1, b) @ _about(0, a)
+    positions = poses[:, :3] - [0.0, 0.0, machine.raised]
+    if not machine.turns:
+        return positions, _about(2, c) @ _about(1, b) @ _about(0, a)
+    rotations = np.broadcast_to(np.eye(3), (len(poses), 3, 3))
+    degree = np.full_like(a, np.radians(1.0))
+    for letter, factor in machine.turns:
+        rotations = rotations @ _about(LETTERS.index(letter) % 3, factor * {"A": a, "B": b, "C": c}.get(letter, degree))
+    return positions, rotations
 
 
 def _about(axis: int, angle: Reals) -> Reals:

@@ -20,7 +20,8 @@ from prove.linuxcnc.packages import LinuxCNC
 from prove.linuxcnc.poses import Reals
 from prove.linuxcnc.room import run_inside
 
-_DISPLAY = Path(__file__).with_name("display.py")
+DISPLAY = Path(__file__).with_name("display.py")
+"""What LinuxCNC runs as its screen."""
 BESIDE = 10.0
 """Millimetres in X and Y that a machine moves to show that it goes on; in identity each joint, in its own unit."""
 _WRONG = 1e12
@@ -80,8 +81,9 @@ def run(machine: Machine, module: Module, linuxcnc: LinuxCNC, work: Path, home: 
 
 def _write(machine: Machine, module: Module, work: Path, home: Mapping[str, float]) -> None:
     """All files that LinuxCNC reads."""
-    shutil.copy(module.file, work)
-    shutil.copy(_DISPLAY, work / "display.py")
+    optional = "".join(f"#define SOFTKIN_WITH_{part} 1\n" for part in ("JACOBIAN", "FRAMES"))
+    (work / module.file.name).write_text(optional + module.file.read_text(encoding="utf-8"), encoding="utf-8")
+    shutil.copy(DISPLAY, work / "display.py")
     (work / "display.py").chmod(0o755)
     texts = {
         "machine.ini": settings.ini(machine, module.name, home),
@@ -101,6 +103,8 @@ def _plan(machine: Machine, module: Module) -> dict[str, object]:
     return {
         "joints": len(machine.first.joints),
         "kinds": settings.kinds(machine),
+        "first": machine.first.joints,
+        "tool": [_upright(machine), f"G43.1 Z{machine.raised}"] if machine.tool else [],
         "second": machine.second.joints,
         "jog": ["XYZABC".index(letter) for letter in machine.letters],
         "unreachable": _line(machine.unreachable),
@@ -110,6 +114,11 @@ def _plan(machine: Machine, module: Module) -> dict[str, object]:
         "identity": [_line(dict.fromkeys(machine.letters, sign * BESIDE), "G91") for sign in (1.0, -1.0)],
         "through": [_line(pose) for pose in machine.through or ()],
     }
+
+
+def _upright(machine: Machine) -> list[float]:
+    """The first joint values with the tool along Z, where a tool may be made longer without a jump."""
+    return [value if joint in machine.linear else 0.0 for joint, value in enumerate(machine.first.joints)]
 
 
 def _line(pose: Pose, counted: str = "G90") -> str:

@@ -96,6 +96,7 @@ def hal(machine: Machine, sizes: Sequence[str]) -> str:
         "addf sampler.0 servo-thread",
         *(f"net motor-{k} joint.{k}.motor-pos-cmd => joint.{k}.motor-pos-fb" for k in range(len(machine.first.joints))),
         *(f"net {pin.replace('.', '-')} {pin} => sampler.0.pin.{number}" for number, pin in enumerate(pins)),
+        *(["net tool-length motion.tooloffset.z => softkin.tool-offset"] if machine.tool else []),
         "net stop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in",
         "setp sampler.0.enable 0",
     ]

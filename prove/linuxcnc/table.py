@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from prove.linuxcnc.verdict import Verdict
 
 HEAD = (
-    "mechanism", "samples", "joints differ", "poses differ", "motors off the way", "elbow kept", "unreachable refused",
-    "seconds",
+    "mechanism", "samples", "joints differ", "poses differ", "speeds differ", "motors off the way", "elbow kept",
+    "unreachable refused", "seconds",
 )  # fmt: skip
 
 
@@ -24,6 +24,7 @@ def _cells(verdict: Verdict) -> tuple[str, ...]:
         f"{verdict.samples:,}",
         f"{verdict.joints:.1e}",
         f"{verdict.poses:.1e}",
+        f"{verdict.speeds:.1e}",
         f"{verdict.off_the_way:.1e}",
         _yes(verdict.elbow_kept),
         _yes(verdict.refused),

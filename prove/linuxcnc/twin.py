@@ -28,17 +28,25 @@ class Twin:
     def robot(self) -> Any:
         """The machine: of which class, its name in the catalogue says."""
         limits = dict(self.machine.limits) or None
-        return softkin.catalogue()[self.machine.mechanism](**self.machine.sizes, limits=limits)
+        sizes = dict(self.machine.sizes)
+        if self.machine.tool is not None:
+            sizes[self.machine.tool[0]] += self.machine.raised
+        return softkin.catalogue()[self.machine.mechanism](**sizes, limits=limits)
+
+    @property
+    def raised(self) -> Reals:
+        """What LinuxCNC adds to the pose (6,) of a program for the tool."""
+        return np.array([0.0, 0.0, self.machine.raised, 0.0, 0.0, 0.0])
 
     def pose(self, joints: Sequence[float]) -> Reals:
         """The pose (6,) at these joint values: X, Y, Z, A, B, C."""
         frame, _ = self.robot.forward(joints)
         (x, y, _), (x2, y2, _), (x3, y3, z3) = frame.rotation
         turned = np.degrees([np.arctan2(y3, z3), np.arctan2(-x3, np.hypot(x, x2)), np.arctan2(x2, x)])
-        if self.machine.letters_are_axes:
+        if self.machine.turns:
             named = dict(zip((axis.name for axis in self.robot.AXES), joints, strict=True))
             turned = np.array([named.get(letter, 0.0) for letter in "ABC"])
-        return np.concatenate([frame.position, turned])
+        return np.concatenate([frame.position, turned]) + self.raised
 
     def home(self) -> dict[str, float]:
         """The pose of the joints' home, by letter."""
@@ -61,6 +69,24 @@ class Twin:
         )
         return greatest(axes - stage.joints[rows]), int(np.count_nonzero(statuses))
 
+    def speeds_differ(self, stage: Stage, rows: Rows) -> float:
+        """The greatest difference of a joint's speed from that by the Jacobian, as a part of the greatest speed.
+
+        Each of these rows stands between two in which the same program moves.
+        """
+        sides = [frames(self.machine, stage.poses[rows + side]) for side in (-1, 1)]
+        moved, turn = sides[1][0] - sides[0][0], sides[1][1] @ sides[0][1].transpose(0, 2, 1)
+        turned = np.stack([turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]])
+        tilted = np.einsum("nij,in->jn", frames(self.machine, stage.poses[rows])[1], turned)
+        names = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
+        known = dict(zip(names, (*moved.T, *0.5 * turned, *0.5 * tilted[:2]), strict=True))
+        twist = np.stack([known[row] for row in self.robot.JACOBIAN_ROWS], axis=1)
+        jacobians, _ = self.robot.jacobian_batch(stage.joints[rows])
+        by_jacobian = np.linalg.solve(jacobians, twist[:, :, None])[:, :, 0]
+        by_jacobian *= [180.0 / np.pi if axis.unit == "deg" else 1.0 for axis in self.robot.AXES]
+        seen = stage.joints[rows + 1] - stage.joints[rows - 1]
+        return greatest(seen - by_jacobian) / greatest(seen)
+
     def forward_differs(self, stage: Stage, rows: Rows) -> tuple[float, int]:
         """The greatest difference of a pose (of a rotation: degrees), and how many the package cannot assemble.
 
@@ -72,7 +98,7 @@ class Twin:
 
     def way_differs(self, stage: Stage, stand: Stand) -> tuple[float, float]:
         """How far the motors leave the way of a program, and by how much they miss the worst end of its lines."""
-        way = segments(self.pose(stand.joints), stand.program)
+        way = segments(self.pose(stand.joints) - self.raised, stand.program)
         positions, rotations, _, _ = self.robot.forward_batch(stage.motors)
         away = np.stack([self._away(part, positions, rotations) for part in way])
         missed = [self._away(Segment(part.end, part.end), positions, rotations).min() for part in way]
@@ -80,7 +106,7 @@ class Twin:
 
     def _away(self, part: Segment, positions: Reals, rotations: Reals) -> Reals:
         """The distance (N,) of frames from a segment: millimetres, or the degrees of the rotation there."""
-        at, turned = frames(self.machine, part.at(part.nearest(positions)))
+        at, turned = frames(self.machine, part.at(part.nearest(positions)) + self.raised)
         away: Reals = np.abs(at - positions).max(axis=1)
         if not self.robot.READS_ROTATION:
             return away

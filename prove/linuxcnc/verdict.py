@@ -14,6 +14,8 @@ from prove.linuxcnc.twin import Rows, Twin, greatest
 
 ALIKE = 1e-9
 """Degrees and millimetres: two programs that compute the same differ by rounding, on values up to a thousand."""
+SPEEDS_ALIKE = 1e-3
+"""Speeds are differences over two periods, in which joints and pose are accelerated."""
 ON_THE_WAY = 0.01
 """Millimetres and degrees that the motors may leave the programmed way: they follow a spline."""
 JUMP = 5.0
@@ -41,6 +43,8 @@ class Verdict:
     """Greatest difference of a joint from the package's inverse kinematics."""
     poses: float
     """Greatest difference of a pose from the package's forward kinematics, where joints were moved one by one."""
+    speeds: float
+    """Greatest difference of a joint's speed from the package's Jacobian, as a part of the greatest speed."""
     off_the_way: float
     """How far the motors left the programmed way."""
     elbow_kept: bool | None
@@ -55,10 +59,11 @@ def verdict(twin: Twin, record: Record) -> Verdict:
     """All questions about what a machine did."""
     says, stages = twin.machine.says, record.stages
     if record.fault:
-        return Verdict(says, 0, _NAN, _NAN, _NAN, False, False, record.seconds, (record.fault,))
+        return Verdict(says, 0, _NAN, _NAN, _NAN, _NAN, False, False, record.seconds, (record.fault,))
     programs = [(stages["first"], twin.machine.first), (stages["second"], twin.machine.second)]
     joints, refusals = zip(*(twin.inverse_differs(*part, _in_program(part[0])) for part in programs), strict=True)
     ways, ends = zip(*(twin.way_differs(*part) for part in programs), strict=True)
+    speeds = max(twin.speeds_differ(stage, _within_program(stage)) for stage, _ in programs)
     poses, impossible = twin.forward_differs(stages["bring"], _one_by_one(stages["bring"]))
     left = list(_leaving(twin, programs))
     reached = list(_reaching(twin, stages))
@@ -69,6 +74,7 @@ def verdict(twin: Twin, record: Record) -> Verdict:
         *_bad(impossible, "joint values between the configurations have no pose"),
         *_above(max(joints), ALIKE, "a joint differs"),
         *_above(poses, ALIKE, "a pose differs"),
+        *_above(speeds, SPEEDS_ALIKE, "a speed differs from that by the Jacobian"),
         *_above(max(ways), ON_THE_WAY, "the motors leave the programmed way"),
         *_above(max(ends), ON_THE_WAY, "the end of a line is missed"),
         *_ill_jogged(twin, stages["jog"]),
@@ -82,7 +88,7 @@ def verdict(twin: Twin, record: Record) -> Verdict:
     kept = not left if twin.robot.BRANCHES else None
     samples = sum(len(_in_program(stage)) for stage, _ in programs)
     return Verdict(
-        says, samples, max(joints), poses, max(ways), kept, not reached, record.seconds, tuple(faults)
+        says, samples, max(joints), poses, speeds, max(ways), kept, not reached, record.seconds, tuple(faults)
     )  # fmt: skip
 
 
@@ -99,6 +105,12 @@ def _above(value: float, most: float, what: str) -> Findings:
 def _in_program(stage: Stage) -> Rows:
     """The rows in which a program moves."""
     return np.flatnonzero(stage.in_program)
+
+
+def _within_program(stage: Stage) -> Rows:
+    """The rows before and behind which the program moves the joints."""
+    moving = _moving(stage)
+    return moving[np.isin(moving + 1, moving)]
 
 
 def _moving(stage: Stage) -> Rows:

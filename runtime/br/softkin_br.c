@@ -10,6 +10,7 @@
 
 #define COORDINATES 15
 #define MOST_ROWS 6
+#define MOST_POINTS 64
 #define STILL 1e-9 /* of a tool, per its length */
 
 typedef struct {
@@ -319,5 +320,38 @@ McPathGenCusMechStatusEnum softkin_br_inverse_derivative(
     rates[i] = system[i*(n + 1) + n];
   }
   memcpy(call->Output.JointDer, rates, sizeof(rates));
+  return answer(SOFTKIN_OK, &call->Info.Status.Code);
+}
+
+McPathGenCusMechStatusEnum softkin_br_wire_frame(const softkin_mechanism *kind, void *machine, softkin_br_points find,
+    const softkin_br_edge *edges, int count, struct McPathGenCusMechWMType *call) {
+  robot one;
+  softkin_frame frame;
+  double points[3*MOST_POINTS], arm[3], tip[3];
+  const void *dimensions = (const void *)(uintptr_t)call->Parameter.MechDimensionsAddr;
+  unsigned status = begin(&one, kind, machine, call->Parameter.MechDimensionsAddr, &call->Parameter.Tool);
+  if (status == SOFTKIN_OK) {
+    status = softkin_forward(kind, machine, call->Input.JointPos, NULL, &frame, NULL, NULL, NULL);
+  }
+  if (status == SOFTKIN_OK) {
+    status = find(dimensions, call->Input.JointPos, &frame, points, NULL);
+  }
+  if (status != SOFTKIN_OK) {
+    return answer(status, &call->Info.Status.Code);
+  }
+  carried(&one, &frame, arm);
+  for (int i = 0; i < 3; i += 1) {
+    tip[i] = frame.position[i] + arm[i];
+  }
+  for (int i = 0; i < count; i += 1) {
+    const double *start = edges[i].start < 0 ? tip : &points[3*edges[i].start];
+    const double *end = edges[i].end < 0 ? tip : &points[3*edges[i].end];
+    call->Output.Edge[i].ID = (UDINT)i + 1u;
+    call->Output.Edge[i].Point1.X = start[0], call->Output.Edge[i].Point1.Y = start[1], call->Output.Edge[i].Point1.Z = start[2];
+    call->Output.Edge[i].Point2.X = end[0], call->Output.Edge[i].Point2.Y = end[1], call->Output.Edge[i].Point2.Z = end[2];
+    call->Output.Edge[i].Distance = 0.0;
+  }
+  call->Output.EdgeCount = (UDINT)count;
+  call->Info.SelfCollision.Detected = 0;
   return answer(SOFTKIN_OK, &call->Info.Status.Code);
 }

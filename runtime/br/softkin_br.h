@@ -28,4 +28,17 @@ McPathGenCusMechStatusEnum softkin_br_direct_derivative(
 McPathGenCusMechStatusEnum softkin_br_inverse_derivative(
     const softkin_mechanism *kind, void *machine, struct McPathGenCusMechInvDerType *call);
 
+/* The points of the drawing at joint values and the frame of the flange there. */
+typedef softkin_status (*softkin_br_points)(
+    const void *parameters, const double *axes, const softkin_frame *frame, double *points, softkin_refusal *why);
+
+/* The numbers of its points, -1 for the point of the tool. */
+typedef struct {
+  int start, end;
+} softkin_br_edge;
+
+/* Edges have numbers from 1, and no distance; collisions are not looked for. */
+McPathGenCusMechStatusEnum softkin_br_wire_frame(const softkin_mechanism *kind, void *machine, softkin_br_points find,
+    const softkin_br_edge *edges, int count, struct McPathGenCusMechWMType *call);
+
 #endif

@@ -52,3 +52,22 @@ static int run(int which, const double *tool, const double *a, const double *b, 
 int call(int which, const double *tool, const double *a, const double *b, const double *c, double *found) {
   return run(which, tool, a, b, c, found);
 }
+
+#ifdef WIRE_FRAME
+/* The number of edges, or the status, negative. found: both points of each edge. */
+int wire_frame(const double *tool, const double *joints, double *found) {
+  struct McPathGenCusMechWMType call = {0};
+  SET(call);
+  memcpy(call.Input.JointPos, joints, sizeof(call.Input.JointPos));
+  if (CALLED(_br_wire_frame)(&call) != mcPATHGEN_CUSMECH_SUCCESS) {
+    return -(int)call.Info.Status.Code;
+  }
+  for (UDINT i = 0; i < call.Output.EdgeCount; i += 1) {
+    if (call.Output.Edge[i].ID != i + 1) {
+      return -99;
+    }
+    memcpy(&found[6*i], &call.Output.Edge[i].Point1, 6*sizeof(double));
+  }
+  return (int)call.Output.EdgeCount;
+}
+#endif

@@ -42,6 +42,7 @@ def library(name: str) -> ctypes.CDLL:
     module = module_name(name)
     sources = [folder / file for file in (f"{module}_br.c", f"{module}.c", "softkin_br.c", "softkin.c")]
     driver = [f'-DMACHINE_HEADER="{module}_br.h"', f"-DMACHINE={module}", Path(__file__).parent / "driver.c"]
+    driver += ["-DWIRE_FRAME"] if "_br_wire_frame" in part["files"][f"{module}_br.h"] else []
     places = ["-I", folder, "-isystem", STUB]
     subprocess.run(["gcc", *FLAGS, "-c", "-o", "/dev/null", *places, sources[2]], check=True)
     subprocess.run(
@@ -76,6 +77,12 @@ class Machine:
             raise TypeError("a derivative needs three")
         status = self.functions.call(which, _Three(*tool), *filled, found)
         return status, list(found)
+
+    def wire_frame(self, axes: Sequence[float], tool: Sequence[float] = (0, 0, 0)) -> tuple[int, Any]:
+        """The number of edges, or the status, negative; and both points of each edge."""
+        found = (ctypes.c_double * 96)()
+        count = self.functions.wire_frame(_Three(*tool), _Fifteen(*axes), found)
+        return count, np.array(found).reshape(16, 2, 3)[: max(count, 0)]
 
     def rotation(self, tcp: Sequence[float], own: Any) -> Any:
         """The rotation that a position of the TCP means."""
@@ -134,6 +141,48 @@ def test_positions_and_rates(name: str) -> None:
         assert status == 0 and back[:count] == pytest.approx(rates, abs=1e-7 / SINGULAR**2)
         compared += 1
     assert compared >= 3
+
+
+@pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
+@pytest.mark.parametrize("name", NAMES)
+def test_wire_frame(name: str) -> None:
+    """At recorded poses at most sixteen edges, one of which ends at the tool where there is room for all; those of a
+    chain follow each other from the base; what has no pose is refused. One machine draws with more than its parameters.
+    """
+    if name == "Softkin_RodPalletizer":
+        assert not hasattr(library(name), "wire_frame")
+        return
+    machine, compared = Machine(name), 0
+    for axes in recorded(name)[:16]:
+        count, edges = machine.wire_frame(axes)
+        try:
+            frame, _ = machine.twin.forward(axes)
+        except softkin.KinematicsError as problem:
+            assert count == -int(problem.status)
+            continue
+        assert 0 < count <= 16
+        close = 1e-6 * machine.scale
+        assert np.abs(edges - frame.position).max(axis=2).min() < close or count == 16
+        if machine.mechanism.chain is not None and not machine.mechanism.drives:
+            assert np.abs(edges[1:, 0] - edges[:-1, 1]).max(initial=0.0) < close and np.abs(edges[0, 0]).max() < close
+            assert np.abs(edges[-1, 1] - frame.position).max() < close
+        compared += 1
+    assert compared >= 3
+
+
+def test_lengths_of_a_wire_frame() -> None:
+    """Arms, rods and plates are as long as the machine's, at any pose; a tool moves the ends of the last alone."""
+    delta, scara = Machine("Kin_Delta_P3C_Type3"), Machine("Kin_Scara3_Z")
+    for axes in ([10.0, 20.0, 15.0], [-5.0, 40.0, 30.0]):
+        count, edges = delta.wire_frame(axes)
+        lengths = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
+        sizes = [DIMENSIONS[delta.mechanism.name][f"{name}_1"] for name in ("inner_arm", "outer_arm", "tcp_radius")]
+        assert count == 9 and np.sort(lengths) == pytest.approx(np.sort([*sizes, *sizes, *sizes]))
+        longer = delta.wire_frame(axes, (0.0, 0.0, 30.0))[1]
+        assert np.argwhere(np.abs(longer - edges).max(axis=2) > 1e-9)[:, 0].tolist() == [6, 7, 8]
+    count, edges = scara.wire_frame([10.0, 20.0, 30.0, 5.0])
+    sizes = [DIMENSIONS[scara.mechanism.name][f"arm_length_{k}"] for k in (1, 2, 3)]
+    assert np.linalg.norm(edges[:3, 1] - edges[:3, 0], axis=1) == pytest.approx(sizes)
 
 
 @pytest.mark.parametrize("name", ["Kin_Scara3_Z", "Kin_ArticulatedRobot_6DOF", "Kin_Scara4_CCZC_ZCcoupled"])

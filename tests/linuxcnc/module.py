@@ -19,7 +19,7 @@ from tests.mechanisms import kinematics_of, named
 
 COMPILER = os.environ.get("CC", "gcc")
 HERE = Path(__file__).parent
-STRICT = ("-Wall", "-Wextra", "-Werror", "-Wconversion", "-DSOFTKIN_WITH_JACOBIAN")
+STRICT = ("-Wall", "-Wextra", "-Werror", "-Wconversion", "-DSOFTKIN_WITH_JACOBIAN", "-DSOFTKIN_WITH_FRAMES")
 LETTERS = "XYZABCUVW"
 MOST_JOINTS = 16
 STUBS = ("2_9", "master")

@@ -12,7 +12,7 @@ from prove.linuxcnc.session import BESIDE, Record, Stage
 from prove.linuxcnc.twin import Twin
 from prove.linuxcnc.verdict import REFUSED, STOPPED
 
-ROWS = 200
+ROWS = 400
 """Rows of a line."""
 JOG = 3.0
 JOGGED = 400
@@ -46,8 +46,8 @@ def answers(twin: Twin, stand: Stand, poses: Reals, near: Reals) -> Reals:
 
 def ran(twin: Twin, name: str, stand: Stand) -> Stage:
     """A program, run to its end."""
-    way = segments(twin.pose(stand.joints), stand.program)
-    poses = np.concatenate([part.at(np.linspace(0.0, 1.0, ROWS)) for part in way])
+    way = segments(twin.pose(stand.joints) - twin.raised, stand.program)
+    poses = np.concatenate([part.at(np.linspace(0.0, 1.0, ROWS)) for part in way]) + twin.raised
     return stage(name, answers(twin, stand, poses, np.array(stand.joints)), poses)
 
 

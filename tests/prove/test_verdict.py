@@ -127,7 +127,8 @@ def _turned(was: Stage) -> Stage:
 PLANTED: dict[str, tuple[str, Callable[[Stage], Stage], str]] = {
     "a program that is not ended": ("second", _cut, "the end of a line is missed"),
     "a program with a complaint": ("first", lambda was: replace(was, said=["following error"]), "following error"),
-    "a joint that jumps": ("second", lambda was: replace(was, joints=was.joints * 9.0), "program: a joint jumps"),
+    "a joint that jumps": ("second", lambda was: replace(was, joints=was.joints * 20.0), "program: a joint jumps"),
+    "a joint too fast": ("first", lambda was: replace(was, joints=was.joints * 1.01), "a speed differs"),
     "motors beside the way": ("first", _leaving, "the motors leave the programmed way"),
     "jogged elsewhere": ("jog", lambda was: replace(was, poses=was.poses + 1e-3), "is jogged: a joint differs"),
     "not jogged": ("jog", lambda was: replace(was, in_world=was.in_program), "the pose is jogged: a joint differs"),
@@ -154,7 +155,7 @@ PLANTED: dict[str, tuple[str, Callable[[Stage], Stage], str]] = {
     "a joint that stays": ("identity", _staying, "identity: a joint misses its end"),
     "another turn": ("kinematics again", _turned, "back from identity, the pose differs"),
     "not stopped": ("through", lambda was: replace(was, said=[]), "is not stopped"),
-    "thrown": ("through", lambda was: replace(was, joints=was.joints * 3.0), "a joint jumps"),
+    "thrown": ("through", lambda was: replace(was, joints=was.joints * 8.0), "a joint jumps"),
     "home lost": ("through", lambda was: replace(was, after={**was.after, "homed": False}), "loses its home"),
     "stuck at the edge": ("behind that", lambda was: replace(was, after=was.before), "does not go on"),
 }  # fmt: skip
@@ -191,7 +192,7 @@ def test_a_pose_is_its_frame(machine: str) -> None:
 def test_a_machine_says_where_it_cannot_go() -> None:
     """Every machine is asked for two configurations, and G0, G1 and G2 in each."""
     machines: tuple[Machine, ...] = MACHINES
-    assert len(machines) == 6 and len(CHOSEN) == 5
+    assert len(machines) == 7 and len(CHOSEN) == 6
     for machine in machines:
         for stand in (machine.first, machine.second):
             assert {move.code for move in stand.program} == {"G0", "G1", "G2"}

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from derive.description.mechanism import Mechanism, Turning
+from derive.emit.around_c.wire_frame import wire_frame
 from derive.emit.braced import harmless
 from derive.emit.c import package as c
 from derive.emit.c.description import inputs
@@ -67,6 +68,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
         "axes": [(joint.name, joint.in_degrees) for joint in kin.mechanism.joints],
         "branches": [(branch.name, branch.names) for branch in kin.branches],
         "functions": _FUNCTIONS,
+        "wire_frame": lambda: wire_frame(kin, module),
         "parameters": [(names[p.name], p.default) for p in kin.parameters],
     }
 

@@ -4,5 +4,6 @@ It may import the folders of `emit` but `page`, `softmotion` and `st`. The calls
 `templates/linuxcnc`.
 
 package: the source of a mechanism, which needs no other
+tool: the length of the tool, which way it points, and what a table turns
 words: the meaning of each coordinate of a LinuxCNC pose on a machine
 """

@@ -38,4 +38,24 @@ CALL(McPathGenCusMechDirType, JointPos[15] AND TcpRefPos[15], TcpPos[15])
 CALL(McPathGenCusMechInvType, TcpPos[15] AND JointRefPos[15], JointPos[15])
 CALL(McPathGenCusMechDirDerType, JointPos[15] AND JointDer[15] AND TcpRefPos[15], TcpDer[15])
 CALL(McPathGenCusMechInvDerType, TcpPos[15] AND TcpDer[15] AND JointRefPos[15], JointDer[15])
+
+struct McEdge {
+  UDINT ID;
+  struct McTranslation Point1, Point2;
+  LREAL Distance;
+};
+struct McPathGenCusMechWMType {
+  struct { LREAL JointPos[15]; } Input;
+  struct { struct McEdge Edge[16]; UDINT EdgeCount; } Output;
+  struct {
+    UDINT MechDimensionsAddr, WfmDescriptionAddr;
+    struct McToolGeometryType Tool;
+    UDINT JointCount;
+    BOOL CheckSelfCollision;
+  } Parameter;
+  struct {
+    struct McStatus Status;
+    struct { BOOL Detected; UDINT EdgeID1, EdgeID2; } SelfCollision;
+  } Info;
+};
 #endif

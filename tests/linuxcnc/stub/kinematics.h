@@ -6,6 +6,10 @@ typedef struct {
   double x, y, z;
 } PmCartesian;
 
+typedef struct {
+  PmCartesian x, y, z;
+} PmRotationMatrix;
+
 typedef struct EmcPose {
   PmCartesian tran;
   double a, b, c, u, v, w;

@@ -4,4 +4,5 @@
 #include <stdint.h>
 typedef double LREAL;
 typedef uint32_t UDINT;
+typedef unsigned char BOOL;
 #endif
