@@ -80,6 +80,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_SkewGantry3": {"skew": 78.0},
+    "Softkin_TableTable_AB": {"pivot_y": 30.0, "pivot_z": -45.0, "tool_length": 125.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
     "Softkin_ThreeCables": _anchors(

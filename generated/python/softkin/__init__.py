@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.scissorlift import ScissorLift
     from softkin.skewgantry3 import SkewGantry3
+    from softkin.tabletable_ab import TableTableAB
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
@@ -172,6 +173,7 @@ __all__ = [
     "Status",
     "TGantry2",
     "TGantry3",
+    "TableTableAB",
     "TableTableAC",
     "TableTableBC",
     "ThreeCables",
@@ -247,6 +249,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
     "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
+    "Softkin_TableTable_AB": ("tabletable_ab", "TableTableAB"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
