@@ -324,6 +324,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_HeadTable_BC": _head_table,
     "Softkin_NutatingHead_CB": _nutating_head,
     "Softkin_NutatingTable_BC": _nutating_table,
+    "Softkin_NutatingTable_AC": _nutating_table_a,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,

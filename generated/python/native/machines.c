@@ -30,6 +30,7 @@
 #include "kin_5axes.h"
 #include "mc_kin_type_12_xy.h"
 #include "nutatinghead_cb.h"
+#include "nutatingtable_ac.h"
 #include "nutatingtable_bc.h"
 #include "p2c_type1.h"
 #include "p2c_type2.h"
@@ -108,6 +109,8 @@ softkin_regular mc_kin_type_12_xy_regular;
 softkin_regular_all mc_kin_type_12_xy_regular_all;
 softkin_regular nutatinghead_cb_regular;
 softkin_regular_all nutatinghead_cb_regular_all;
+softkin_regular nutatingtable_ac_regular;
+softkin_regular_all nutatingtable_ac_regular_all;
 softkin_regular nutatingtable_bc_regular;
 softkin_regular_all nutatingtable_bc_regular_all;
 softkin_regular p2c_type1_regular;
@@ -204,6 +207,8 @@ const softkin_native softkin_machines[] = {
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
     {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
+    {"nutatingtable_ac 0ca6fc10120c6137", &nutatingtable_ac_mechanism,
+        {nutatingtable_ac_regular, nutatingtable_ac_regular_all}},
     {"nutatingtable_bc 7fe2e8827b514731", &nutatingtable_bc_mechanism,
         {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 fbcba3dc3ed70f77", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},

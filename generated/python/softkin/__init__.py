@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from softkin.kin_5axes import Kin5Axes
     from softkin.mc_kin_type_12_xy import KinType12XY
     from softkin.nutatinghead_cb import NutatingHeadCB
+    from softkin.nutatingtable_ac import NutatingTableAC
     from softkin.nutatingtable_bc import NutatingTableBC
     from softkin.p2c_type1 import P2CType1
     from softkin.p2c_type2 import P2CType2
@@ -144,6 +145,7 @@ __all__ = [
     "Mechanism",
     "Mounted",
     "NutatingHeadCB",
+    "NutatingTableAC",
     "NutatingTableBC",
     "OrientationImage",
     "P2CType1",
@@ -225,6 +227,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_5Axes": ("kin_5axes", "Kin5Axes"),
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
     "Softkin_NutatingHead_CB": ("nutatinghead_cb", "NutatingHeadCB"),
+    "Softkin_NutatingTable_AC": ("nutatingtable_ac", "NutatingTableAC"),
     "Softkin_NutatingTable_BC": ("nutatingtable_bc", "NutatingTableBC"),
     "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
     "Kin_P2C_Type2": ("p2c_type2", "P2CType2"),
