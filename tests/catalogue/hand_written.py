@@ -322,6 +322,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_HeadHead_CB": _head_head,
     "Softkin_HeadTable_AC": _head_table_a,
     "Softkin_HeadTable_BC": _head_table,
+    "Softkin_NutatingHead_CA": _nutating_head_a,
     "Softkin_NutatingHead_CB": _nutating_head,
     "Softkin_NutatingTable_BC": _nutating_table,
     "Softkin_NutatingTable_AC": _nutating_table_a,

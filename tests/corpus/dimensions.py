@@ -53,6 +53,9 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_HeadHead_CB": {"fork_offset": 25.0, "head_offset": -15.0, "pivot_length": 260.0},
     "Softkin_HeadTable_AC": {"head_offset": -25.0, "pivot_length": 220.0},
     "Softkin_HeadTable_BC": {"head_offset": 35.0, "pivot_length": 240.0},
+    "Softkin_NutatingHead_CA": {
+        "fork_offset": 12.0, "head_offset": -18.0, "pivot_length": 270.0, "nutation": 50.0,
+    },
     "Softkin_NutatingHead_CB": {
         "fork_offset": 5.0, "head_offset": -10.0, "pivot_length": 280.0, "nutation": 45.0,
     },

@@ -29,6 +29,7 @@
 #include "hgantry3.h"
 #include "kin_5axes.h"
 #include "mc_kin_type_12_xy.h"
+#include "nutatinghead_ca.h"
 #include "nutatinghead_cb.h"
 #include "nutatingtable_ac.h"
 #include "nutatingtable_bc.h"
@@ -107,6 +108,8 @@ softkin_regular kin_5axes_regular;
 softkin_regular_all kin_5axes_regular_all;
 softkin_regular mc_kin_type_12_xy_regular;
 softkin_regular_all mc_kin_type_12_xy_regular_all;
+softkin_regular nutatinghead_ca_regular;
+softkin_regular_all nutatinghead_ca_regular_all;
 softkin_regular nutatinghead_cb_regular;
 softkin_regular_all nutatinghead_cb_regular_all;
 softkin_regular nutatingtable_ac_regular;
@@ -205,6 +208,8 @@ const softkin_native softkin_machines[] = {
     {"kin_5axes a6f9b998fbcf4560", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
     {"mc_kin_type_12_xy e183bd4df5886db4", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
+    {"nutatinghead_ca 973bd69be6d4ff74", &nutatinghead_ca_mechanism,
+        {nutatinghead_ca_regular, nutatinghead_ca_regular_all}},
     {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
     {"nutatingtable_ac 0ca6fc10120c6137", &nutatingtable_ac_mechanism,

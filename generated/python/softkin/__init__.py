@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from softkin.hgantry3 import HGantry3
     from softkin.kin_5axes import Kin5Axes
     from softkin.mc_kin_type_12_xy import KinType12XY
+    from softkin.nutatinghead_ca import NutatingHeadCA
     from softkin.nutatinghead_cb import NutatingHeadCB
     from softkin.nutatingtable_ac import NutatingTableAC
     from softkin.nutatingtable_bc import NutatingTableBC
@@ -144,6 +145,7 @@ __all__ = [
     "KinematicsError",
     "Mechanism",
     "Mounted",
+    "NutatingHeadCA",
     "NutatingHeadCB",
     "NutatingTableAC",
     "NutatingTableBC",
@@ -226,6 +228,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
     "Kin_5Axes": ("kin_5axes", "Kin5Axes"),
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
+    "Softkin_NutatingHead_CA": ("nutatinghead_ca", "NutatingHeadCA"),
     "Softkin_NutatingHead_CB": ("nutatinghead_cb", "NutatingHeadCB"),
     "Softkin_NutatingTable_AC": ("nutatingtable_ac", "NutatingTableAC"),
     "Softkin_NutatingTable_BC": ("nutatingtable_bc", "NutatingTableBC"),
