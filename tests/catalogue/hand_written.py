@@ -325,6 +325,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_NutatingHead_CA": _nutating_head_a,
     "Softkin_NutatingHead_CB": _nutating_head,
     "Softkin_NutatingTable_BC": _nutating_table,
+    "Softkin_NutatingHeadTable_BC": _nutating_head_table,
     "Softkin_NutatingTable_AC": _nutating_table_a,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,

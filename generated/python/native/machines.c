@@ -31,6 +31,7 @@
 #include "mc_kin_type_12_xy.h"
 #include "nutatinghead_ca.h"
 #include "nutatinghead_cb.h"
+#include "nutatingheadtable_bc.h"
 #include "nutatingtable_ac.h"
 #include "nutatingtable_bc.h"
 #include "p2c_type1.h"
@@ -112,6 +113,8 @@ softkin_regular nutatinghead_ca_regular;
 softkin_regular_all nutatinghead_ca_regular_all;
 softkin_regular nutatinghead_cb_regular;
 softkin_regular_all nutatinghead_cb_regular_all;
+softkin_regular nutatingheadtable_bc_regular;
+softkin_regular_all nutatingheadtable_bc_regular_all;
 softkin_regular nutatingtable_ac_regular;
 softkin_regular_all nutatingtable_ac_regular_all;
 softkin_regular nutatingtable_bc_regular;
@@ -212,6 +215,8 @@ const softkin_native softkin_machines[] = {
         {nutatinghead_ca_regular, nutatinghead_ca_regular_all}},
     {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
+    {"nutatingheadtable_bc 61e12098d68af4c5", &nutatingheadtable_bc_mechanism,
+        {nutatingheadtable_bc_regular, nutatingheadtable_bc_regular_all}},
     {"nutatingtable_ac 0ca6fc10120c6137", &nutatingtable_ac_mechanism,
         {nutatingtable_ac_regular, nutatingtable_ac_regular_all}},
     {"nutatingtable_bc 7fe2e8827b514731", &nutatingtable_bc_mechanism,

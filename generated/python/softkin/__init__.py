@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from softkin.mc_kin_type_12_xy import KinType12XY
     from softkin.nutatinghead_ca import NutatingHeadCA
     from softkin.nutatinghead_cb import NutatingHeadCB
+    from softkin.nutatingheadtable_bc import NutatingHeadTableBC
     from softkin.nutatingtable_ac import NutatingTableAC
     from softkin.nutatingtable_bc import NutatingTableBC
     from softkin.p2c_type1 import P2CType1
@@ -147,6 +148,7 @@ __all__ = [
     "Mounted",
     "NutatingHeadCA",
     "NutatingHeadCB",
+    "NutatingHeadTableBC",
     "NutatingTableAC",
     "NutatingTableBC",
     "OrientationImage",
@@ -230,6 +232,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
     "Softkin_NutatingHead_CA": ("nutatinghead_ca", "NutatingHeadCA"),
     "Softkin_NutatingHead_CB": ("nutatinghead_cb", "NutatingHeadCB"),
+    "Softkin_NutatingHeadTable_BC": ("nutatingheadtable_bc", "NutatingHeadTableBC"),
     "Softkin_NutatingTable_AC": ("nutatingtable_ac", "NutatingTableAC"),
     "Softkin_NutatingTable_BC": ("nutatingtable_bc", "NutatingTableBC"),
     "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
