@@ -139,6 +139,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_TGantry2": {},
     "Kin_TGantry3": {},
+    "Softkin_Bipod_C": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0},
     "Softkin_Delta_C": {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0},
     "Softkin_DualScara": {
         "base_distance": 140.0, "arm_length_1": 200.0, "arm_length_2": 210.0, "rod_length_1": 260.0,

@@ -7,6 +7,7 @@
 #include "ac6_threeparallel.h"
 #include "ac6_txtytzryrxrz.h"
 #include "articulatedrobot_6dof.h"
+#include "bipod_c.h"
 #include "bipod_rotary.h"
 #include "caxis.h"
 #include "caxis_tool.h"
@@ -79,6 +80,8 @@ softkin_regular ac6_txtytzryrxrz_regular;
 softkin_regular_all ac6_txtytzryrxrz_regular_all;
 softkin_regular articulatedrobot_6dof_regular;
 softkin_regular_all articulatedrobot_6dof_regular_all;
+softkin_regular bipod_c_regular;
+softkin_regular_all bipod_c_regular_all;
 softkin_regular bipod_rotary_regular;
 softkin_regular_all bipod_rotary_regular_all;
 softkin_regular caxis_regular;
@@ -184,6 +187,7 @@ const softkin_native softkin_machines[] = {
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
     {"articulatedrobot_6dof c12a61cf78d2bd96", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
+    {"bipod_c e6485194ac775402", &bipod_c_mechanism, {bipod_c_regular, bipod_c_regular_all}},
     {"bipod_rotary 2fee8fd2d0b50352", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
     {"caxis 6aff182d3865f2af", &caxis_mechanism, {caxis_regular, NULL}},

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from softkin.ac6_threeparallel import Ac6ThreeParallel
     from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
     from softkin.articulatedrobot_6dof import ArticulatedRobot6DOF
+    from softkin.bipod_c import BipodC
     from softkin.bipod_rotary import BipodRotary
     from softkin.caxis import CAxis
     from softkin.caxis_tool import CAxisTool
@@ -113,6 +114,7 @@ __all__ = [
     "Ac6ThreeParallel",
     "ArticulatedRobot6DOF",
     "Axis",
+    "BipodC",
     "BipodRotary",
     "CAxis",
     "CAxisTool",
@@ -208,6 +210,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Ac6_ThreeParallel": ("ac6_threeparallel", "Ac6ThreeParallel"),
     "Kin_Ac6_TXTYTZRYRXRZ": ("ac6_txtytzryrxrz", "Ac6TXTYTZRYRXRZ"),
     "Kin_ArticulatedRobot_6DOF": ("articulatedrobot_6dof", "ArticulatedRobot6DOF"),
+    "Softkin_Bipod_C": ("bipod_c", "BipodC"),
     "Kin_Bipod_Rotary": ("bipod_rotary", "BipodRotary"),
     "Kin_CAxis": ("caxis", "CAxis"),
     "Kin_CAxis_Tool": ("caxis_tool", "CAxisTool"),
