@@ -5,6 +5,7 @@ x, y, z and the turn of the flange about z, or its whole rotation, entry by entr
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
 
 import numpy as np
 
@@ -242,21 +243,58 @@ def _inclined(p: Mapping[str, float]) -> tuple[float, float, float]:
     return 0.0, float(np.sin(np.radians(p["nutation"]))), float(np.cos(np.radians(p["nutation"])))
 
 
+def _product(*turns: Array) -> Array:
+    """Rotations, entry by entry, one after the other."""
+    return reduce(lambda a, b: np.einsum("ij...,jk...->ik...", a, b), turns)
+
+
+def _leaning_x(p: Mapping[str, float]) -> tuple[float, float, float]:
+    return _inclined(p)[1], 0.0, _inclined(p)[2]
+
+
 def _nutating_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    fork, head = _about((0, 0, 1), q[3]), _about(_inclined(p), q[4])
-    arm = np.einsum("ij...,j->i...", head, [p["head_offset"], 0, -p["pivot_length"]])
-    arm = np.array([arm[0] + p["fork_offset"], arm[1], arm[2]])
-    tip = np.einsum("ij...,j...->i...", fork, arm)
-    rotation = np.einsum("ij...,jk...->ik...", fork, head)
-    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, rotation))
+    return _forked(p, q, _inclined(p), np.eye(3)[0])
+
+
+def _nutating_head_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return _forked(p, q, _leaning_x(p), np.eye(3)[1])
+
+
+def _forked(p: Mapping[str, float], q: Sequence[Array], axis: Sequence[float], across: Array) -> Pose:
+    """The offsets of the fork and of the head are across its axis."""
+    fork, head = _about((0, 0, 1), q[3]), _about(axis, q[4])
+    arm = np.einsum("ij...,j->i...", head, across * p["head_offset"] - (0, 0, p["pivot_length"]))
+    tip = np.einsum("ij...,j...->i...", fork, arm + np.multiply.outer(across * p["fork_offset"], np.ones_like(q[3])))
+    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, _product(fork, head)))
+
+
+def _nutating_head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    head, table = _about(_inclined(p), q[3]), _about((0, 0, 1), -q[4])
+    tip = np.einsum("ij...,j->i...", head, [p["head_offset"], 0, -p["pivot_length"]])
+    place = np.einsum("ij...,j...->i...", table, np.array([tip[k] + q[k] for k in range(3)]))
+    return *place, tuple(map(tuple, _product(table, head)))
+
+
+def _two_tables(
+    p: Mapping[str, float], q: Sequence[Array], outer: Sequence[float], inner: Sequence[float] = (0, 0, 1)
+) -> Pose:
+    """Tables one on the other, each turned back about its axis."""
+    carrier, table = _about(outer, -q[3]), _about(inner, -q[4])
+    tip = np.einsum("ij...,j...->i...", carrier, np.array([q[0], q[1], q[2] - p["tool_length"]]))
+    tip = np.array([tip[k] - p.get(f"pivot_{c}", 0.0) for k, c in enumerate("xyz")])
+    return *np.einsum("ij...,j...->i...", table, tip), tuple(map(tuple, _product(table, carrier)))
 
 
 def _nutating_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    carrier, table = _about(_inclined(p), -q[3]), _about((0, 0, 1), -q[4])
-    tip = np.einsum("ij...,j...->i...", carrier, np.array([q[0], q[1], q[2] - p["tool_length"]]))
-    tip = np.array([tip[0] - p["pivot_x"], tip[1], tip[2] - p["pivot_z"]])
-    place = np.einsum("ij...,j...->i...", table, tip)
-    return *place, tuple(map(tuple, np.einsum("ij...,jk...->ik...", table, carrier)))
+    return _two_tables(p, q, _inclined(p))
+
+
+def _nutating_table_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return _two_tables(p, q, _leaning_x(p))
+
+
+def _dual_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return _two_tables(p, q, (1, 0, 0), (0, 1, 0))
 
 
 def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
@@ -284,11 +322,15 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_HeadHead_CB": _head_head,
     "Softkin_HeadTable_AC": _head_table_a,
     "Softkin_HeadTable_BC": _head_table,
+    "Softkin_NutatingHead_CA": _nutating_head_a,
     "Softkin_NutatingHead_CB": _nutating_head,
     "Softkin_NutatingTable_BC": _nutating_table,
+    "Softkin_NutatingHeadTable_BC": _nutating_head_table,
+    "Softkin_NutatingTable_AC": _nutating_table_a,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,
+    "Softkin_TableTable_AB": _dual_table,
     "Softkin_TableTable_AC": _table_table,
     "Softkin_TableTable_BC": _table_table_b,
     "Softkin_Tracyl": _mantle,

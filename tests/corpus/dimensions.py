@@ -53,10 +53,15 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_HeadHead_CB": {"fork_offset": 25.0, "head_offset": -15.0, "pivot_length": 260.0},
     "Softkin_HeadTable_AC": {"head_offset": -25.0, "pivot_length": 220.0},
     "Softkin_HeadTable_BC": {"head_offset": 35.0, "pivot_length": 240.0},
+    "Softkin_NutatingHead_CA": {
+        "fork_offset": 12.0, "head_offset": -18.0, "pivot_length": 270.0, "nutation": 50.0,
+    },
     "Softkin_NutatingHead_CB": {
         "fork_offset": 5.0, "head_offset": -10.0, "pivot_length": 280.0, "nutation": 45.0,
     },
     "Softkin_NutatingTable_BC": {"pivot_x": 8.0, "pivot_z": 30.0, "tool_length": 110.0, "nutation": 50.0},
+    "Softkin_NutatingHeadTable_BC": {"head_offset": 30.0, "pivot_length": 250.0, "nutation": 45.0},
+    "Softkin_NutatingTable_AC": {"pivot_y": -12.0, "pivot_z": 35.0, "tool_length": 115.0, "nutation": 45.0},
     "Softkin_Palletizer": {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
@@ -80,6 +85,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Softkin_ScaraOnRail": {"link_length_1": 325.0, "link_length_2": 225.0},
     "Softkin_SkewGantry3": {"skew": 78.0},
+    "Softkin_TableTable_AB": {"pivot_y": 30.0, "pivot_z": -45.0, "tool_length": 125.0},
     "Softkin_TableTable_AC": {"pivot_y": 40.0, "pivot_z": -60.0, "tool_length": 120.0},
     "Softkin_TableTable_BC": {"pivot_x": -35.0, "pivot_z": 50.0, "tool_length": 130.0},
     "Softkin_ThreeCables": _anchors(
@@ -133,6 +139,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Kin_TGantry2": {},
     "Kin_TGantry3": {},
+    "Softkin_Bipod_C": {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0},
     "Softkin_Delta_C": {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0},
     "Softkin_DualScara": {
         "base_distance": 140.0, "arm_length_1": 200.0, "arm_length_2": 210.0, "rod_length_1": 260.0,

@@ -7,6 +7,7 @@
 #include "ac6_threeparallel.h"
 #include "ac6_txtytzryrxrz.h"
 #include "articulatedrobot_6dof.h"
+#include "bipod_c.h"
 #include "bipod_rotary.h"
 #include "caxis.h"
 #include "caxis_tool.h"
@@ -29,7 +30,10 @@
 #include "hgantry3.h"
 #include "kin_5axes.h"
 #include "mc_kin_type_12_xy.h"
+#include "nutatinghead_ca.h"
 #include "nutatinghead_cb.h"
+#include "nutatingheadtable_bc.h"
+#include "nutatingtable_ac.h"
 #include "nutatingtable_bc.h"
 #include "p2c_type1.h"
 #include "p2c_type2.h"
@@ -54,6 +58,7 @@
 #include "sccc.h"
 #include "scissorlift.h"
 #include "skewgantry3.h"
+#include "tabletable_ab.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
 #include "tgantry2.h"
@@ -75,6 +80,8 @@ softkin_regular ac6_txtytzryrxrz_regular;
 softkin_regular_all ac6_txtytzryrxrz_regular_all;
 softkin_regular articulatedrobot_6dof_regular;
 softkin_regular_all articulatedrobot_6dof_regular_all;
+softkin_regular bipod_c_regular;
+softkin_regular_all bipod_c_regular_all;
 softkin_regular bipod_rotary_regular;
 softkin_regular_all bipod_rotary_regular_all;
 softkin_regular caxis_regular;
@@ -105,8 +112,14 @@ softkin_regular kin_5axes_regular;
 softkin_regular_all kin_5axes_regular_all;
 softkin_regular mc_kin_type_12_xy_regular;
 softkin_regular_all mc_kin_type_12_xy_regular_all;
+softkin_regular nutatinghead_ca_regular;
+softkin_regular_all nutatinghead_ca_regular_all;
 softkin_regular nutatinghead_cb_regular;
 softkin_regular_all nutatinghead_cb_regular_all;
+softkin_regular nutatingheadtable_bc_regular;
+softkin_regular_all nutatingheadtable_bc_regular_all;
+softkin_regular nutatingtable_ac_regular;
+softkin_regular_all nutatingtable_ac_regular_all;
 softkin_regular nutatingtable_bc_regular;
 softkin_regular_all nutatingtable_bc_regular_all;
 softkin_regular p2c_type1_regular;
@@ -143,6 +156,8 @@ softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
 softkin_regular scissorlift_regular;
 softkin_regular skewgantry3_regular;
+softkin_regular tabletable_ab_regular;
+softkin_regular_all tabletable_ab_regular_all;
 softkin_regular tabletable_ac_regular;
 softkin_regular_all tabletable_ac_regular_all;
 softkin_regular tabletable_bc_regular;
@@ -172,6 +187,7 @@ const softkin_native softkin_machines[] = {
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
     {"articulatedrobot_6dof c12a61cf78d2bd96", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
+    {"bipod_c e6485194ac775402", &bipod_c_mechanism, {bipod_c_regular, bipod_c_regular_all}},
     {"bipod_rotary 2fee8fd2d0b50352", &bipod_rotary_mechanism,
         {bipod_rotary_regular, bipod_rotary_regular_all}},
     {"caxis 6aff182d3865f2af", &caxis_mechanism, {caxis_regular, NULL}},
@@ -199,8 +215,14 @@ const softkin_native softkin_machines[] = {
     {"kin_5axes a6f9b998fbcf4560", &kin_5axes_mechanism, {kin_5axes_regular, kin_5axes_regular_all}},
     {"mc_kin_type_12_xy e183bd4df5886db4", &mc_kin_type_12_xy_mechanism,
         {mc_kin_type_12_xy_regular, mc_kin_type_12_xy_regular_all}},
+    {"nutatinghead_ca 973bd69be6d4ff74", &nutatinghead_ca_mechanism,
+        {nutatinghead_ca_regular, nutatinghead_ca_regular_all}},
     {"nutatinghead_cb 16b20da1ddff4623", &nutatinghead_cb_mechanism,
         {nutatinghead_cb_regular, nutatinghead_cb_regular_all}},
+    {"nutatingheadtable_bc 61e12098d68af4c5", &nutatingheadtable_bc_mechanism,
+        {nutatingheadtable_bc_regular, nutatingheadtable_bc_regular_all}},
+    {"nutatingtable_ac 0ca6fc10120c6137", &nutatingtable_ac_mechanism,
+        {nutatingtable_ac_regular, nutatingtable_ac_regular_all}},
     {"nutatingtable_bc 7fe2e8827b514731", &nutatingtable_bc_mechanism,
         {nutatingtable_bc_regular, nutatingtable_bc_regular_all}},
     {"p2c_type1 fbcba3dc3ed70f77", &p2c_type1_mechanism, {p2c_type1_regular, p2c_type1_regular_all}},
@@ -228,6 +250,8 @@ const softkin_native softkin_machines[] = {
     {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
     {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
+    {"tabletable_ab 2d2564872c585f43", &tabletable_ab_mechanism,
+        {tabletable_ab_regular, tabletable_ab_regular_all}},
     {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,
         {tabletable_ac_regular, tabletable_ac_regular_all}},
     {"tabletable_bc e52e37a34e57d5b2", &tabletable_bc_mechanism,

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from softkin.ac6_threeparallel import Ac6ThreeParallel
     from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
     from softkin.articulatedrobot_6dof import ArticulatedRobot6DOF
+    from softkin.bipod_c import BipodC
     from softkin.bipod_rotary import BipodRotary
     from softkin.caxis import CAxis
     from softkin.caxis_tool import CAxisTool
@@ -60,7 +61,10 @@ if TYPE_CHECKING:
     from softkin.hgantry3 import HGantry3
     from softkin.kin_5axes import Kin5Axes
     from softkin.mc_kin_type_12_xy import KinType12XY
+    from softkin.nutatinghead_ca import NutatingHeadCA
     from softkin.nutatinghead_cb import NutatingHeadCB
+    from softkin.nutatingheadtable_bc import NutatingHeadTableBC
+    from softkin.nutatingtable_ac import NutatingTableAC
     from softkin.nutatingtable_bc import NutatingTableBC
     from softkin.p2c_type1 import P2CType1
     from softkin.p2c_type2 import P2CType2
@@ -85,6 +89,7 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.scissorlift import ScissorLift
     from softkin.skewgantry3 import SkewGantry3
+    from softkin.tabletable_ab import TableTableAB
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
     from softkin.tgantry2 import TGantry2
@@ -109,6 +114,7 @@ __all__ = [
     "Ac6ThreeParallel",
     "ArticulatedRobot6DOF",
     "Axis",
+    "BipodC",
     "BipodRotary",
     "CAxis",
     "CAxisTool",
@@ -142,7 +148,10 @@ __all__ = [
     "KinematicsError",
     "Mechanism",
     "Mounted",
+    "NutatingHeadCA",
     "NutatingHeadCB",
+    "NutatingHeadTableBC",
+    "NutatingTableAC",
     "NutatingTableBC",
     "OrientationImage",
     "P2CType1",
@@ -172,6 +181,7 @@ __all__ = [
     "Status",
     "TGantry2",
     "TGantry3",
+    "TableTableAB",
     "TableTableAC",
     "TableTableBC",
     "ThreeCables",
@@ -200,6 +210,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Ac6_ThreeParallel": ("ac6_threeparallel", "Ac6ThreeParallel"),
     "Kin_Ac6_TXTYTZRYRXRZ": ("ac6_txtytzryrxrz", "Ac6TXTYTZRYRXRZ"),
     "Kin_ArticulatedRobot_6DOF": ("articulatedrobot_6dof", "ArticulatedRobot6DOF"),
+    "Softkin_Bipod_C": ("bipod_c", "BipodC"),
     "Kin_Bipod_Rotary": ("bipod_rotary", "BipodRotary"),
     "Kin_CAxis": ("caxis", "CAxis"),
     "Kin_CAxis_Tool": ("caxis_tool", "CAxisTool"),
@@ -222,7 +233,10 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
     "Kin_5Axes": ("kin_5axes", "Kin5Axes"),
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
+    "Softkin_NutatingHead_CA": ("nutatinghead_ca", "NutatingHeadCA"),
     "Softkin_NutatingHead_CB": ("nutatinghead_cb", "NutatingHeadCB"),
+    "Softkin_NutatingHeadTable_BC": ("nutatingheadtable_bc", "NutatingHeadTableBC"),
+    "Softkin_NutatingTable_AC": ("nutatingtable_ac", "NutatingTableAC"),
     "Softkin_NutatingTable_BC": ("nutatingtable_bc", "NutatingTableBC"),
     "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
     "Kin_P2C_Type2": ("p2c_type2", "P2CType2"),
@@ -247,6 +261,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
     "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
+    "Softkin_TableTable_AB": ("tabletable_ab", "TableTableAB"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),

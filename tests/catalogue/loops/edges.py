@@ -78,6 +78,7 @@ FIVE_BARS: tuple[Edge, ...] = (
 EDGES: dict[str, tuple[Edge, ...]] = {
     "Kin_P2C_Type1": FIVE_BARS,
     "Kin_Bipod_Rotary": FIVE_BARS,
+    "Softkin_Bipod_C": tuple((sizes, (*axes, 30.0)) for sizes, axes in FIVE_BARS),
     "Kin_P2C_Type2": (
         (linked(250.0, 330.0 * JUST, 120.0, 40.0), (180.0, 0.0)),
         (linked(250.0, 300.0, 120.0, 40.0), (180.0, 0.0)),
@@ -152,6 +153,7 @@ FIVE_BAR_PLACES = ((-80.0, 0.0, 0.0), (80.0, 0.0, 0.0))
 PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]], ...]] = {
     "Kin_P2C_Type1": ((five_bar(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
     "Kin_Bipod_Rotary": ((five_bar(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
+    "Softkin_Bipod_C": ((five_bar(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
     "Kin_P2C_Type2": ((linked(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
     "Kin_P2X_Type1": (({"arm_length_1": 400.0, "arm_length_2": 380.0}, ((0.0, -390.0, 0.0), (0.0, -410.0, 0.0))),),
     "MC_KIN_TYPE_12_XY": (

@@ -71,6 +71,7 @@ DELTA = {
     f"{name}_{i}": v for name, v in (("base_radius", 140.0), ("inner_arm", 200.0), ("outer_arm", 450.0)) for i in "123"
 }
 CARRIED = {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0}
+PLANAR = {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0}
 TWO_ARMS = {"base_distance": 140.0} | {f"{n}_length_{i}": s for i in "12" for n, s in (("arm", 200.0), ("rod", 260.0))}
 
 
@@ -108,6 +109,7 @@ IMPOSSIBLE = {
     "a forearm too long behind": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_3": 701.0}, "link 3"),
     "a rod too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_4": 501.0}, "link 4"),
     "a plate too small for the delta": ("Softkin_Delta_C", CARRIED, {"base_radius": 846.0}, "reach the plate"),
+    "a plate too small for the bipod": ("Softkin_Bipod_C", PLANAR, {"displacement": 791.0}, "reach the plate"),
     "a dual SCARA too wide": ("Softkin_DualScara", TWO_ARMS, {"base_distance": 921.0}, "span base_distance"),
     "an arm 1 that stays away": ("Softkin_DualScara", TWO_ARMS, {"arm_length_1": 861.0}, "arm 2 must reach"),
     "an arm 2 that stays away": ("Softkin_DualScara", TWO_ARMS, {"rod_length_2": 801.0}, "arm 1 must reach"),
