@@ -15,7 +15,7 @@ from tests.catalogue.hexapod.machines import NAMES, Array, Machine, machines, ro
 from tests.catalogue.hexapod.programs import found_from, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
-from tests.text import test_initialise, test_not_initialised, values
+from tests.text import test_initialise, values
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
 from tests.text.loops.machines import Loop, loops_of
@@ -130,7 +130,7 @@ def test_every_statement_runs() -> None:
         for name in ("nominal", "lopsided"):
             compare_some(machines()[name], controller(name), 2)
         test_it_says_what_the_flange_can_do()
-        test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
+        test_initialise.test_no_method_works(loops, test_initialise.fresh)
         test_the_other_assembly_mode_is_refused()
         test_without_control_there_is_no_jacobian()
         test_refusals.test_what_is_no_number(np.nan)

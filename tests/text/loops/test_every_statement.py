@@ -18,7 +18,6 @@ from tests.text import (
     test_configuration_blocks,
     test_garbage,
     test_initialise,
-    test_not_initialised,
 )
 from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
 from tests.text.loops import test_branches
@@ -72,7 +71,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     """What the comparisons leave out: refusals, and the other blocks."""
     test_blocks_alone.test_the_number_of_axes(loops)
     test_blocks_alone.test_calling_the_block_itself_does_nothing(loops)
-    test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
+    test_initialise.test_no_method_works(loops, test_initialise.fresh)
     test_initialise.test_every_parameter_is_checked(loops[-1:])
     test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
     test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)
