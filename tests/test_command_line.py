@@ -190,7 +190,6 @@ def test_only_never_shrinks_the_output_of_the_project(tmp_path: Path, capsys: py
 
 
 def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None:
-    """`--only` writes the files of the chosen mechanisms alone."""
     text = (folder / "right.py").read_text()
     (folder / "other.py").write_text(text.replace("Kin_Right", "Kin_Other"))
     output = tmp_path / "out"
@@ -201,7 +200,6 @@ def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None
 
 
 def test_an_alias_is_a_mechanism_of_its_own(folder: Path) -> None:
-    """An alias becomes a mechanism with its own name."""
     path = folder / "right.py"
     path.write_text(path.read_text().replace("    source=", '    aliases=("Kin_Also_Right",),\n    source='))
     (_, first), (_, second) = catalogue(folder)
@@ -226,5 +224,4 @@ def test_by_products_are_no_orphans(tmp_path: Path) -> None:
 
 
 def test_the_project_generates_into_its_own_folder() -> None:
-    """The default output is the folder `generated` of the project."""
     assert OUTPUT == ROOT / "generated"

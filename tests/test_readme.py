@@ -22,7 +22,6 @@ def plain(text: str) -> str:
 
 
 def test_the_block_in_the_readme_is_the_block_that_comes_out() -> None:
-    """The block in the README is the generated one."""
     (shown,) = re.findall(r"```iecst\n(.*?)```", README, re.DOTALL)
     block = plain((ROOT / "generated/st/scara/Kin_Scara4_ZCcoupled_Type1.st").read_text(encoding="utf-8"))
     parts = [plain(part) for part in shown.split("…")]

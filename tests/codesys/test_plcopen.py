@@ -39,7 +39,6 @@ def errors(text: str) -> list[str]:
 
 
 def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
-    """There is a PLCopenXML file for every mechanism, and one with all of them."""
     found = {str(p.relative_to(ROOT)) for p in ROOT.rglob("*.xml")}
     assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"}
     assert len(UNITS) >= 30
@@ -79,7 +78,6 @@ def test_what_is_read_back_compiles() -> None:
 
 
 def test_folders_are_those_of_the_files() -> None:
-    """The folders in the file are those in which the `.st` files are."""
     wanted: dict[str, list[str]] = {}
     for name, text in FILES.items():
         wanted.setdefault(name.split("/")[0], []).extend(p.path for p in parts_of(text) if "." not in p.path)

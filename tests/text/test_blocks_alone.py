@@ -195,7 +195,6 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 @pytest.mark.long("Hexapod", "P2C_Type1.CartesianToAxes", "Pos_RRR.CartesianToAxes", "ToAxes_Offset", "Diagnose")
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
-    """A method of the block answers as the Python package does."""
     compare = comparisons_of(mechanism)[method]
     for pair in pairs_of(mechanism):
         regular = pair.regular[:: 2 if isinstance(pair, Loop) else 1]  # which has many, for its limits

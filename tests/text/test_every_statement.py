@@ -97,7 +97,6 @@ def singular(
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
-    """The tests execute every statement of the shared functions."""
     kinds = product(test_shared_matrices.ORDERS, (72, 36))
     libraries = [compiled_shared(), *(test_shared_matrices.library(*kind) for kind in kinds)]
     libraries += [test_shared_matrices.misbehaving(name) for name in test_shared_matrices.BROKEN]

@@ -110,7 +110,6 @@ def test_a_length_has_no_default(pairs: tuple[Pair, ...]) -> None:
 @pytest.mark.broad
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(pairs: tuple[Pair, ...], size: int) -> None:
-    """Initialize refuses a library whose matrix has another size."""
     mechanism = pairs[0].mechanism
     controller = Controller(compiled(mechanism, matrix_size=size), mechanism)
     assert controller.initialise(pairs[0].robot.parameters) == NOT_INITIALIZED

@@ -18,7 +18,6 @@ BEYOND, TOLERATED = 1e-8, 1e-9
 
 
 def test_every_limit_refuses_alone(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """Each limit refuses a pose that only this limit excludes."""
     one = serial_pairs[4]
     tried = {joint.key for joint in one.mechanism.joints} | {quantity.name for quantity in one.mechanism.limited}
     for name in sorted(tried):
@@ -40,7 +39,6 @@ def test_every_limit_refuses_alone(serial_pairs: tuple[SerialPair, ...]) -> None
 
 
 def test_a_turn_that_refuses_is_told_with_the_one_inside(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """A refused turn is reported with the number of the turn that is inside."""
     one = serial_pairs[4]
     for sample in one.regular[:3]:
         assert check_other_turns(one, sample) or not one.robot.PERIOD_AXES
@@ -115,7 +113,6 @@ def inside_domains(machine: Machine, axes: Array) -> Array:
 @pytest.mark.broad
 @pytest.mark.long
 def test_a_path_is_followed_without_a_jump(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """The block follows a path without a jump of an axis."""
     lengths = []
     for one in serial_pairs:
         line = path(one.machine)

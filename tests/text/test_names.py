@@ -123,7 +123,6 @@ def generated(tmp_path: Path, capsys: pytest.CaptureFixture[str], **changes: str
 
 @pytest.mark.slow
 def test_a_mechanism_with_the_name_of_a_block_of_softmotion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A mechanism with the name of a block of SoftMotion is refused, and nothing is written."""
     said = generated(tmp_path, capsys, CODESYS="SINSEGYE")
     wanted = "scara/Kin_Scara2_Z.st: Kin_Scara2_Z declares Kin_Scara2_Z, which is a name of the SoftMotion libraries"
     assert said == f"error: {wanted}: {REMEDY}\n"
@@ -240,7 +239,6 @@ def test_success_is_the_one_of_the_list() -> None:
 
 @pytest.mark.parametrize(("name", "axis"), [("RotaryAxis", 0), ("LinearAxis", 2)])
 def test_a_type_of_axis_is_the_one_of_the_list(name: str, axis: int) -> None:
-    """The type of an axis is what the list names."""
     other = {"RotaryAxis": "Linear", "LinearAxis": "Rotary"}[name]
     found, block = ready(name, other, SCARA_TEXT, **ARMS)
     properties = found.new("TRAFO.Axis_Properties")

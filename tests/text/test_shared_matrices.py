@@ -48,7 +48,6 @@ def test_solve(size: int) -> None:
 
 
 def test_solve_where_the_first_pivot_is_zero() -> None:
-    """A system whose first pivot is zero is solved."""
     determinant, solution = solved(np.array([[0.0, 2.0], [4.0, 1.0]]), np.array([[2.0], [9.0]]))
     assert determinant == -8.0
     assert solution.tolist() == [[2.0], [1.0]]
@@ -158,7 +157,6 @@ def test_the_order_is_found(order: str) -> None:
 
 @pytest.mark.parametrize("size", [36, 80])
 def test_no_order_where_the_size_differs(size: int) -> None:
-    """A matrix of another size has an unknown order."""
     assert library("rows", size).function("Softkin_FindMatrixOrder")() == "Unknown"
 
 

@@ -24,7 +24,6 @@ def offered(one: SerialPair) -> bool:
 
 
 def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """A frame that was rounded to single precision is answered as in Python."""
     for one in (serial_pairs[0], serial_pairs[-1]):
         for sample in one.regular[:3]:
             (position, rotation), own = one.robot.forward(sample.axes)

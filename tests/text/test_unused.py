@@ -26,7 +26,6 @@ def test_everything_declared_is_used(file: str) -> None:
 
 @pytest.mark.parametrize("name", ["Softkin_Kinematics", "Softkin_SelfTest"])
 def test_what_the_base_declares_is_read_by_a_block(name: str) -> None:
-    """No variable of a base block is there for nobody."""
     texts = [text for text in FILES.values() if f"EXTENDS {name}" in text]
     (base,) = parse(FILES[f"softkin/{name}.st"], name)
     assert isinstance(base, ast.Block)
@@ -104,13 +103,11 @@ TEXT = "FUNCTION_BLOCK Block\n\nMETHOD PUBLIC Nothing\nEND_METHOD\nEND_FUNCTION_
 
 
 def test_an_object_without_an_end_is_refused() -> None:
-    """An object without its closing line is refused."""
     with pytest.raises(ValueError, match="'METHOD PUBLIC Nothing' has no END_METHOD"):
         objects_of(TEXT.replace("METHOD PUBLIC Nothing\nEND_METHOD", "METHOD PUBLIC Nothing"))
 
 
 def test_text_in_no_object_is_refused() -> None:
-    """Text outside of all objects is refused."""
     with pytest.raises(ValueError, match="'x : INT;' stands in no object"):
         objects_of(f"{TEXT}\nx : INT;\n")
 
@@ -166,7 +163,6 @@ def test_declarations_that_no_block_has_yet() -> None:
 
 
 def test_a_head_it_cannot_read_is_refused() -> None:
-    """A declaration with an unknown head is refused."""
     with pytest.raises(ValueError, match="not a head of an object"):
         declaration_of("FUNCTION_BLOCK Robot ABSTRACT\nVAR\nEND_VAR")
 
@@ -202,7 +198,6 @@ def test_unbroken_it_compiles_and_agrees() -> None:
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_a_broken_text_is_refused(name: str) -> None:
-    """A text with a mistake is refused with the message for that mistake."""
     with pytest.raises(StError, match=re.escape(REFUSED[name].said)):
         compile_st(texts(REFUSED[name]))
 
@@ -216,7 +211,6 @@ def test_a_missing_object_is_refused() -> None:
 
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_stops_the_text(name: str) -> None:
-    """A text with a run-time fault stops with the message for that fault."""
     library = compile_st(texts(FAULTS[name]))
     one = with_text_of(library, "random 1")
     with pytest.raises(StFault, match=FAULTS[name].said):

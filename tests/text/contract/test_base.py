@@ -132,7 +132,6 @@ def test_inputs_are_documented(file: str) -> None:
 
 
 def test_vendor_ranges_are_half_open() -> None:
-    """The ranges of inputs are written as half-open intervals."""
     block = blocks()["scara/Kin_Scara4_ZCcoupled_Type1.st"]
     inputs = {v.name: v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables}
     assert "{attribute 'sm_kin_param_range' := ']0 .. 800]'}" in inputs["dLinkLength1"].pragmas

@@ -16,7 +16,6 @@ ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientatio
 
 
 def test_every_mechanism_has_its_block() -> None:
-    """Every mechanism has a function block."""
     assert len(blocks()) == len(UNITS) >= 20
 
 
@@ -91,7 +90,6 @@ def test_the_kinds_of_the_vendors_parts() -> None:
 
 
 def test_two_blocks_implement_everything() -> None:
-    """Two blocks together implement every interface of the contract."""
     files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
     names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements[:-1]]
     assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
@@ -99,7 +97,6 @@ def test_two_blocks_implement_everything() -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
-    """Exactly the blocks with turns implement the interface for the limits of drives."""
     block = blocks()[file]
     has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
     assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
@@ -140,7 +137,6 @@ def test_names_of_objects_are_unique_ignoring_case() -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
-    """No two names inside a block are the same in upper or lower case."""
     block = blocks()[file]
     members = [v.name for s in block.sections for v in s.variables] + [m.name for m in block.methods] + ["NumAxes"]
     for method in block.methods:

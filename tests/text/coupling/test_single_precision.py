@@ -26,7 +26,6 @@ def rows(matrix: np.ndarray) -> Rows:
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{c}-{w.name}" for c, w in PAIRS])
 def test_a_coupling_answers_as_for_the_repaired_frame(carrier: str, wrist: Mechanism) -> None:
-    """A coupling answers a frame in single precision as it answers the repaired frame."""
     first = position_part(EVERYTHING[carrier])
     second = orientation_parts(wrist)[0]
     try:

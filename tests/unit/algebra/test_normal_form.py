@@ -90,7 +90,6 @@ def test_signs_are_only_signs_where_they_are_named() -> None:
 
 
 def test_pi_is_half_a_turn_in_degrees() -> None:
-    """Pi becomes 180 degrees."""
     assert polynomial(X * A1 / (2 * sp.pi), (A1,), ()) == X * A1 / (360 * DEGREE)
 
 

@@ -48,7 +48,6 @@ def _texts(mechanism: Mechanism) -> list[ElementTree.Element]:
 
 
 def test_the_description_refers_to_a_shipped_picture(mechanism: Mechanism) -> None:
-    """The description of a block refers to a picture that is shipped, in a proper size."""
     (name,) = re.findall(r"^\.\. image:: @\((.+)\)$", _block(mechanism), re.MULTILINE)
     with Image.open(PICTURES / name) as image:
         assert image.format == "PNG"

@@ -116,7 +116,6 @@ def test_what_is_no_python_is_not_laid_out() -> None:
 
 @given(names=st.lists(st.from_regex("[a-z_]{1,40}", fullmatch=True), unique=True, max_size=20))
 def test_values_are_assigned_in_lines_that_fit(names: list[str]) -> None:
-    """Values are assigned in their order, in lines within the width."""
     lines = assigned({name: f"k.{name}" for name in names})
     pairs = [pair for line in lines for pair in zip(*(side.split(", ") for side in line.split(" = ")), strict=True)]
     assert pairs == [(name, f"k.{name}") for name in names]

@@ -114,7 +114,6 @@ def test_words_of_a_text_are_no_calls() -> None:
 @pytest.mark.long
 @given(axis=st.floats(-45000.0, 45000.0))
 def test_a_period_is_the_interval_that_holds_the_axis(axis: float) -> None:
-    """The period number of an axis value belongs to the interval of one turn that holds the value."""
     number = period(axis)
     assert number != 0
     start = -180.0 + 360.0 * (number - 1 if number > 0 else number)
@@ -123,7 +122,6 @@ def test_a_period_is_the_interval_that_holds_the_axis(axis: float) -> None:
 
 @given(axis=st.floats(-1e9, 1e9))
 def test_periods_of_arrays_are_those_of_numbers(axis: float) -> None:
-    """Period numbers are equal on arrays and on plain numbers."""
     assert _periods(np.array([axis]))[0] == period(axis)
 
 
@@ -187,7 +185,6 @@ def test_what_are_no_bytes_is_refused(bytes_: object) -> None:
 
 @pytest.mark.parametrize("rows", [np.eye(4), ((1, 0, 0), (0, 1, 0)), "abc", 1.0, ((1, 0), (0, 1), (0, 0))])
 def test_what_are_no_three_rows_is_refused(rows: object) -> None:
-    """A rotation that does not have three rows of three numbers is refused."""
     with pytest.raises(KinematicsError):
         rotation_by_rows(rows)  # type: ignore[arg-type]
 

@@ -98,7 +98,6 @@ def test_any_error_in_between(seed: int, size: float) -> None:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int) -> None:
-    """A matrix that is no rotation is refused with the reason and the amount of its error."""
     rotation = random_rotation(seed)
     texts = rotation_texts()
     wrong = [(m, None) for m in too_far_off(rotation)] + [(m, HANDED) for m in mirrored(rotation)]

@@ -154,7 +154,6 @@ def test_beyond_a_limit_it_says_which_turn_is_inside() -> None:
 
 
 def test_a_point_off_the_flange_is_refused_with_a_reason() -> None:
-    """The inverse of a point beside the flange refuses with a reason and an amount."""
     robot = softkin.Scara2Z(**LENGTHS)
     error = raised(robot.inverse_offset, (620.0, 0.0, 0.0), (100.0, 0.0, 0.0))
     assert error is not None and error.refusal is not None

@@ -202,7 +202,6 @@ def test_an_alias_is_folded_into_the_arguments() -> None:
 
 
 def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
-    """A constant of a shared program is hoisted once for all of its callers."""
     programs = [caller("first"), caller("second", given=2 * C)]
     found = shared(programs)
     assert [p.name for p in found] == ["hypotenuse"]
@@ -225,14 +224,12 @@ def test_constants_are_hoisted_out_of_the_shared_program_once() -> None:
 
 
 def test_a_shared_program_comes_before_the_one_that_calls_it() -> None:
-    """Shared programs are listed before the programs that call them."""
     outer = caller("outer")
     top = normalise("top", (Call(outer, ((C, C), (Q, Q)), (X,)),), [Output("x", X)])
     assert [p.name for p in shared([top, outer])] == ["hypotenuse", "outer"]
 
 
 def test_the_verifier_refuses_wrong_calls() -> None:
-    """A call with wrong names, arguments or results is refused."""
     good = caller().body[0]
     assert isinstance(good, Call)
     for broken, inputs, word in (

@@ -22,18 +22,15 @@ SAMPLE = Program(
 
 
 def test_what_a_statement_reads() -> None:
-    """A statement reads the names in its expressions."""
     assert SAMPLE.body[0].reads() == {X}
     assert SAMPLE.body[1].reads() == {A, Y}
 
 
 def test_a_degree_is_no_input() -> None:
-    """The constant DEGREE is no input."""
     assert symbols_of(DEGREE * X) == {X}
 
 
 def test_what_a_program_reads_is_what_it_does_not_bind() -> None:
-    """A program reads the names that it does not bind."""
     assert SAMPLE.reads() == {X, Y, real("free")}
 
 
@@ -44,7 +41,6 @@ def test_its_parts_in_order() -> None:
 
 
 def test_a_choice_between_equals_is_none() -> None:
-    """A choice between equal values is that value."""
     assert Select(sp.Gt(X, 0), A, A) == A
     assert Select(sp.Gt(X, 0), A, B) != A
 
@@ -65,7 +61,6 @@ def leaf(graph: Graph, head: sp.Basic) -> Value:
 
 
 def test_a_sum_is_the_same_in_any_order_and_its_opposite_is_the_same_node(graph: Graph) -> None:
-    """Sums in any order are one node, and the opposite sum is the same node with a sign."""
     x, y = leaf(graph, X), leaf(graph, Y)
     difference = graph.sum([x, -y])
     assert graph.sum([-y, x]) == difference
@@ -73,7 +68,6 @@ def test_a_sum_is_the_same_in_any_order_and_its_opposite_is_the_same_node(graph:
 
 
 def test_signs_of_factors_and_divisors_stand_beside_the_product(graph: Graph) -> None:
-    """The signs of factors and divisors are collected in one sign beside the product."""
     x, y, z = (leaf(graph, s) for s in (X, Y, Z))
     quotient = graph.product([x, y], [z])
     assert graph.product([-y, x], [z]) == -quotient
@@ -81,7 +75,6 @@ def test_signs_of_factors_and_divisors_stand_beside_the_product(graph: Graph) ->
 
 
 def test_equal_terms_are_counted_and_opposite_ones_cancel(graph: Graph) -> None:
-    """Equal terms become a multiple, and opposite terms cancel."""
     x, y = leaf(graph, X), leaf(graph, Y)
     assert graph.sum([x, y, -x]) == y
     assert graph.sum([x, -x]) == graph.leaf(sp.Integer(0))
@@ -115,7 +108,6 @@ def test_a_choice_that_is_decided_is_none(graph: Graph) -> None:
 
 
 def test_a_part_of_a_condition_that_is_decided_is_not_asked(graph: Graph) -> None:
-    """Decided and repeated parts of a condition are dropped."""
     condition = graph.apply(sp.Gt, [leaf(graph, X), leaf(graph, Y)])
     true, false = graph.leaf(sp.true), graph.leaf(sp.false)
     assert graph.apply(sp.And, [condition, true, condition]) == condition
@@ -124,7 +116,6 @@ def test_a_part_of_a_condition_that_is_decided_is_not_asked(graph: Graph) -> Non
 
 
 def test_what_is_made_of_whole_numbers_is_whole_until_it_is_converted(graph: Graph) -> None:
-    """Expressions of whole numbers are whole until they are converted to a real number."""
     turn = leaf(graph, count("turn"))
     degrees = graph.product([graph.leaf(sp.Integer(360)), turn])
     assert degrees.node.is_whole
@@ -145,7 +136,6 @@ def program(*body: Statement, inputs: tuple[sp.Symbol, ...] = (X, Y), output: sp
 
 
 def test_every_primitive_is_accepted() -> None:
-    """A program with every primitive is accepted."""
     far = sp.And(sp.Gt(X, 0), sp.Or(sp.Le(Y, 1), sp.Lt(X, Y)), sp.Ge(Y, -1))
     sample = program(
         Let(Z, sp.sin(X) + sp.cos(Y) * sp.Abs(X) - Root(X**2) / Y + X**-2 + sp.Rational(1, 3) + sp.Float(0.5)),
@@ -206,7 +196,6 @@ BROKEN = {
 
 @pytest.mark.parametrize("kind", BROKEN)
 def test_broken_programs_are_refused(kind: str) -> None:
-    """A broken program is refused with the message for its fault."""
     broken, message = BROKEN[kind]
     with pytest.raises(BrokenProgram, match="^sample: .*" + re.escape(message)):
         verify(broken)

@@ -125,13 +125,11 @@ def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
 
 
 def test_an_angle_on_the_arc_is_itself_up_to_turns() -> None:
-    """An angle on the arc is unchanged except for whole turns."""
     found = nearest_on_arc(np.asarray([0.3, 0.3 + 4 * pi, -1.2, 2.0, -2.0]), np.asarray(0.0), np.asarray(pi / 2))
     assert found == pytest.approx([0.3, 0.3, -1.2, pi / 2, -pi / 2], abs=1e-14)
 
 
 def test_the_first_failing_condition_gives_the_status() -> None:
-    """The status of a row is that of the first condition that fails."""
     program = Program(
         "p",
         (X,),
@@ -191,7 +189,6 @@ def amount_of(program: Program) -> sp.Expr | None:
 
 
 def test_what_only_an_amount_reads_is_written_out_in_it() -> None:
-    """A value that only the amount of a reason reads is written into the amount."""
     program = normalise("p", [Let(B, 2 * X), Let(C, B + Y), refusing(C**2)], OUT)
     assert program.bound() == ()
     assert amount_of(program) == (2 * X + Y) ** 2
@@ -218,7 +215,6 @@ def test_aliases_are_folded_in_amounts() -> None:
 
 
 def test_amounts_read_constants_that_are_hoisted() -> None:
-    """An amount reads a hoisted constant by its name."""
     program = normalise("p", [Let(B, 2 * K), Let(C, B + X), refusing(B, sp.Gt(C, 0))], [Output("o", C)])
     (lowered,), hoisted = hoist([program], ["k"])
     assert [let.value for let in hoisted] == [2 * K]
@@ -233,7 +229,6 @@ def test_an_amount_does_not_count_as_read() -> None:
 
 
 def test_a_name_that_an_amount_reads_is_an_input() -> None:
-    """A name that only an amount reads is an input of the program."""
     assert with_inputs(Program("p", (), (refusing(Y),), ())).inputs == (X, Y)
 
 
@@ -244,7 +239,6 @@ def test_an_amount_of_nothing_is_found() -> None:
 
 
 def test_every_expression_of_a_reason_is_rewritten() -> None:
-    """Rewriting a condition rewrites every expression of its reason."""
     turns = (OtherTurn("A", X, (X, X + 1), (2 * X,)),)
     statement = replace(refusing(X), reason=Reason(Subject(Kind.JOINT, "a"), Why.BELOW, X, Unit.ANGLE, turns))
     changed = rewritten(statement, lambda e: e.xreplace({X: Y}))

@@ -36,7 +36,6 @@ A, B, N, M, X, Y = flag("a"), flag("b"), count("n"), count("m"), real("x"), real
     ],
 )  # fmt: skip
 def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
-    """Every expression has the expected type."""
     assert type_of(value) is expected
 
 
@@ -105,7 +104,6 @@ def test_values_of_another_type_are_refused(statement: Statement) -> None:
 
 
 def test_a_name_that_is_read_as_another_type_is_refused() -> None:
-    """A name that is read as another type than it was bound is refused."""
     with pytest.raises(BrokenProgram, match="another type"):
         verify(_program(Let(flag("f"), X > 0), Let(real("v"), real("f") + 1)))
     with pytest.raises(BrokenProgram, match="mixes types"):
@@ -168,7 +166,6 @@ def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -
     ],
 )  # fmt: skip
 def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> None:
-    """An angle that is used as a number before its turn is chosen is refused."""
     with pytest.raises(IllTypedError):
         type_of(value, ANGLES)
 
@@ -183,7 +180,6 @@ def test_an_angle_is_no_number_before_its_turn_is_chosen(value: sp.Basic) -> Non
     ],
 )  # fmt: skip
 def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
-    """A name that is bound to an angle is an angle."""
     angle = Let(Q, DIRECTION)
     with pytest.raises(BrokenProgram):
         verify(_program(angle, statement))
@@ -191,7 +187,6 @@ def test_a_name_that_is_bound_to_an_angle_is_one(statement: Statement) -> None:
 
 
 def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
-    """The state of an iteration and the result of a call may be angles."""
     turning = _loop(start=(DIRECTION, sp.false, sp.Integer(0)), following=(real("s") + X, X > 0, count("k")))
     verify(_program(turning, Let(real("c"), sp.cos(real("s")))))
     told = Program("told", (X, Y), (), (Output("angle", DIRECTION),))
@@ -255,7 +250,6 @@ def test_an_entry_that_is_no_number(wrong: float) -> None:
 
 @pytest.mark.parametrize("wrong", NO_NUMBERS)
 def test_a_right_hand_side_that_is_no_number(wrong: float) -> None:
-    """A system with a right-hand side that is no number has no solution, in every language."""
     for place in np.ndindex(3, 2):
         right = SIDES.copy()
         right[place] = wrong

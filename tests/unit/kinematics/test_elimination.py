@@ -85,7 +85,6 @@ def commanded(kin: Kinematics, poses: Array, axes: Array) -> dict[str, Array]:
 
 @pytest.mark.slow
 def test_every_motion_changes_the_values_of_a_line_linearly() -> None:
-    """The values behind a motion are those of the moved line, exactly."""
 
     def values(point: sp.Matrix, line: sp.Matrix) -> sp.Matrix:
         square, along = point.dot(point), point.dot(line)

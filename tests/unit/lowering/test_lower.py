@@ -34,7 +34,6 @@ def lets_of(one: Program) -> dict[str, sp.Expr]:
 
 
 def test_two_programs_share_what_is_hoisted() -> None:
-    """Equal constants of two programs are hoisted once."""
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
     assert len(hoisted) == 1
@@ -57,7 +56,6 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
 
 
 def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
-    """Signs are distributed so that a product has no minus sign in front."""
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
     assert lets_of(shorter)["h"] == A * (F * Y - G * X)
@@ -199,7 +197,6 @@ def shorter(program: Program, constants: str = "") -> Program:
 
 
 def test_products_of_both_branches_are_computed_once() -> None:
-    """Products that two branches share are computed once after unrolling."""
     swing = Let(R, ToReal(ELBOW.symbol) * Root(X))
     program = unroll(of(swing, Let(C, P * Y - Q * R), Let(S, Q * Y + P * R), outputs=(C, S)), (ELBOW,))
     found = shorter(program)

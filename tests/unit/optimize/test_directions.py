@@ -76,7 +76,6 @@ def test_a_divisor_that_is_no_length_is_kept() -> None:
 @pytest.mark.parametrize("senses", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign: int) -> None:
-    """The angle of a direction that another angle rotates is the sum or difference of both angles."""
     first, second = senses
     lets = (
         Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2),

@@ -47,7 +47,6 @@ def test_a_circle_is_refused() -> None:
 
 
 def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
-    """Symbols with the same name are one name, whatever their assumptions."""
     long = sp.Symbol("a", positive=True)
     program = normalise("p", [Let(B, long + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", A + B)])
     assert program.inputs == (A,)

@@ -69,7 +69,6 @@ def test_both_roots(sigma: float, a: float, b: float, free: float) -> None:
 @few
 @given(a=NUMBERS, b=NUMBERS)
 def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
-    """A radius that is stated to be positive has one root."""
     binding = answer(polar, RADIUS)
     assert binding.determinant is None
     values, _ = execute(binding.statements, {A: a, B: b, SCALE: 1.0, FREE: 0.0})
