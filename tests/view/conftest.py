@@ -7,8 +7,7 @@ import pytest
 from tests.fresh import Generation
 from tests.view.available import available
 from tests.view.driver import BROWSER, driven
-from tests.view.pages import catalogue_page, kept_modules, own_page
-from tests.view.states import Seen
+from tests.view.pages import Seen, catalogue_page, kept_modules, own_page
 
 PICTURES = Path(__file__).parents[2] / "build" / "view"
 """The pictures of the last run, to be looked at."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import softkin
 
-from tests.view.states import ARM, Seen, confirm, frame_of, robot_of
+from tests.view.pages import ARM, Seen, confirm, frame_of, robot_of
 
 pytestmark = pytest.mark.slow
 

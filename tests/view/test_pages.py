@@ -21,7 +21,7 @@ from tests.machines.test_hostile_text import Elements, pair
 from tests.mechanisms import catalogue, named
 from tests.view.available import available
 from tests.view.driver import prepared
-from tests.view.states import ARM, Seen
+from tests.view.pages import ARM, Seen
 
 pytestmark = pytest.mark.slow
 

@@ -17,8 +17,7 @@ import softkin
 from softkin import Frame, KinematicsError, Status
 from softkin._plot import Line, lines_of
 
-from tests.catalogue.calls.mountings import BASE, EVERY, machines, radian, tool_of
-from tests.catalogue.calls.robots import NAMES, frame_at, poses, robots
+from tests.catalogue.calls.mountings import BASE, EVERY, NAMES, frame_at, machines, poses, radian, robots, tool_of
 from tests.catalogue.refusals import refusal
 from tests.catalogue.robots import KR6_R900
 from tests.catalogue.search.arms import turn

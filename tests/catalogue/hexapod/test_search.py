@@ -12,8 +12,16 @@ from derive.ir.program import Status as Outcome
 from derive.ir.symbols import real
 from derive.mechanisms.kin_hexapod import MECHANISM
 from derive.plate.newton import LIMIT
-from tests.catalogue.hexapod.machines import Array, Machine, machines, rotation, rotations
-from tests.catalogue.hexapod.programs import bounded, found_from, search_changed
+from tests.catalogue.hexapod.machines import (
+    Array,
+    Machine,
+    bounded,
+    found_from,
+    machines,
+    rotation,
+    rotations,
+    search_changed,
+)
 from tests.catalogue.refusals import refusal
 from tests.text.controller import IMPOSSIBLE
 from tests.text.hexapod.blocks import controller, made

@@ -9,8 +9,18 @@ from softkin import Frame
 
 from derive.description.mechanism import Mechanism
 from derive.ir.constants import ONE_TURN
-from tests.catalogue.turns.axes import FULL, MECHANISMS, REACH, Axes, TurningAxis, turning_axes
-from tests.catalogue.turns.callers import Asked, Caller, InPython, OnController
+from tests.catalogue.turns.axes import (
+    FULL,
+    MECHANISMS,
+    REACH,
+    Asked,
+    Axes,
+    Caller,
+    InPython,
+    OnController,
+    TurningAxis,
+    turning_axes,
+)
 from tests.catalogue.turns.ranges import (
     FEW_STEPS,
     FEW_WIDTHS,

@@ -11,8 +11,7 @@ from softkin import Status
 from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod import test_refusals
-from tests.catalogue.hexapod.machines import NAMES, Array, Machine, machines, rotation
-from tests.catalogue.hexapod.programs import found_from, without_mode
+from tests.catalogue.hexapod.machines import NAMES, Array, Machine, found_from, machines, rotation, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
 from tests.text import test_initialise, values

@@ -21,8 +21,7 @@ from tests.text import (
 )
 from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
 from tests.text.loops import test_branches
-from tests.text.loops.answers import COMPARISONS
-from tests.text.loops.machines import LOOPS, Loop, loop_of, loops_of
+from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loop_of, loops_of
 from tests.text.loops.test_branches import compare
 from tests.text.other_turns import check_other_turns
 from tests.text.reasons import compare_reason, provoke

@@ -14,8 +14,8 @@ from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
 from tests.mechanisms import catalogue
 from tests.text.breakage import MECHANISM, WRONG, texts
-from tests.text.counting import counted
 from tests.text.selftest.planted import planted
+from tests.text.statements import counted
 from tests.text.units import FOLDER, compiled_shared, file_of, shared_texts, text_of
 
 pytestmark = pytest.mark.slow
