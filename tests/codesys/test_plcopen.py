@@ -190,18 +190,9 @@ def test_what_the_standard_has_no_element_for() -> None:
         for word in ("Private", "Protected")
     )
     assert protected == [
-        "Describe",
-        "ReadInputs",
-        "FindPose",
-        "SolveBranch",
-        "ReasonOf",
-        "FindJacobian",
-        "FindBias",
-        "FindMargins",
-        "FindOrientation",
-        "FindOffsetBranches",
-        "SolveOffsetBranch",
-    ]
+        "Describe", "ReadInputs", "FindPose", "SolveBranch", "ReasonOf", "FindJacobian", "FindBias", "FindMargins",
+        "FindOrientation", "FindOffsetBranches", "SolveOffsetBranch",
+    ]  # fmt: skip
     assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
     assert private == []
     base = _only(root, ".//p:pou[@name='Softkin_Kinematics']")

@@ -102,13 +102,8 @@ def test_inputs_are_documented(file: str) -> None:
     assert len(axes) == (file != "orientation/Softkin_Tool.st")
     assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
     for title in (
-        "**Axes**",
-        "**Parameters**",
-        "**Configuration**",
-        "**Singularities**",
-        "**Workspace**",
-        "**Verification**",
-    ):
+        "**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Workspace**", "**Verification**",
+    ):  # fmt: skip
         assert title in block.comment
     for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):
         assert given.comment and given.initial is not None
