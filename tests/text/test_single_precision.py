@@ -23,8 +23,8 @@ def offered(one: SerialPair) -> bool:
     return "getflangeorientationimagewithori" in one.controller.methods
 
 
-def test_a_frame_from_real_is_answered_as_in_python(serial_pairs: tuple[SerialPair, ...]) -> None:
-    for one in (serial_pairs[0], serial_pairs[-1]):
+def test_a_frame_from_real_is_answered_as_in_python(pairs: tuple[Pair, ...]) -> None:
+    for one in (pairs[0], pairs[-1]):
         for sample in one.regular[:3]:
             (position, rotation), own = one.robot.forward(sample.axes)
             for matrix in slightly_off(np.array(rotation)):

@@ -7,6 +7,8 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
+from tests.catalogue.refusals import status_of
+
 ARM = {"d1": 350.0, "a2": 310.0, "d4": 290.0}
 
 

@@ -8,11 +8,10 @@ import softkin
 from numpy.testing import assert_allclose
 from softkin import Frame, Hexapod, KinematicsError, Status
 
-from tests.catalogue.hexapod.conftest import NAMES
 from tests.catalogue.hexapod.machines import Array, Machine, machines, rotation
 from tests.catalogue.refusals import refusal
-from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
-from tests.text.controller import BAD_INPUT, OK
+from tests.orthonormal import mirrored, slightly_off, too_far_off
+from tests.text.controller import OK
 from tests.text.hexapod.blocks import controller
 
 
@@ -162,16 +161,6 @@ def test_forward_from_starts(machine: Machine) -> None:
     assert np.array_equal(np.concatenate([position, turn.reshape(-1, 9)], axis=1), rows, equal_nan=True)
 
 
-def test_inverse(machine: Machine) -> None:
-    positions, turns = machine.poses(200, turn=110.0)
-    positions, turns = spoiled(positions, np.nan, 2e9, np.inf), np.roll(spoiled(turns, 2.0, np.nan, 1e300), 5, axis=0)
-    robot = machine.robot
-    rows, statuses = one_by_one(lambda i: robot.inverse((positions[i], turns[i])), len(positions), 6)
-    axes, status = robot.inverse_batch(positions, turns)
-    assert status.tolist() == statuses and set(statuses) == {Status.OK, Status.UNREACHABLE, Status.BAD_INPUT}
-    assert np.array_equal(axes, rows, equal_nan=True)
-
-
 CASES = {
     (0, 0, 20, 0, 0, 0): (29.746680487073, 29.746680487073, 29.746714726168, 29.746363424795, 29.746363424795,
         29.746714726168),
@@ -203,32 +192,6 @@ def test_the_catalogue_knows_it() -> None:
     assert softkin.catalogue()["Kin_Hexapod"] is Hexapod
     assert machines()["nominal"].robot.orientation_image().freedom == "three"
     assert np.shape(machines()["nominal"].robot.jacobian((650.0,) * 6)) == (6, 6)
-
-
-def test_the_legs_are_those_of_the_repaired_frame(machine: Machine) -> None:
-    """The leg lengths for a rotation with a small error are those for the repaired rotation."""
-    positions, turns = machine.poses(2, 10.0)
-    for position, turn in zip(positions, turns, strict=True):
-        matrices = list(slightly_off(turn))
-        table, statuses = machine.robot.inverse_batch([position] * len(matrices), matrices)
-        assert (statuses == Status.OK).all()
-        for matrix, row in zip(matrices, table, strict=True):
-            expected = machine.axes(position, repaired(matrix))
-            assert machine.robot.inverse((position, matrix)) == pytest.approx(tuple(expected), rel=1e-12)
-            assert row == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_the_block_does_the_same(name: str) -> None:
-    machine, block = machines()[name], controller(name)
-    positions, turns = machine.poses(2, 10.0)
-    for matrix in slightly_off(turns[0]):
-        status, axes = block.inverse(positions[0], matrix.tolist(), (), (0.0,) * 6)
-        assert status == OK and axes == pytest.approx(tuple(machine.axes(positions[0], repaired(matrix))), rel=1e-12)
-    for matrix in (*too_far_off(turns[0]), *mirrored(turns[0])):
-        assert block.inverse(positions[0], matrix.tolist(), (), (0.0,) * 6)[0] == BAD_INPUT
-        found = machine.robot.diagnose((positions[0], matrix))
-        assert block.diagnose(positions[0], matrix.tolist(), (), (0.0,) * 6) == (found.reason, found.missing)
 
 
 def test_a_start_is_repaired_too(machine: Machine) -> None:

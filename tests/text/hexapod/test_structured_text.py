@@ -14,7 +14,7 @@ from tests.catalogue.hexapod import test_refusals
 from tests.catalogue.hexapod.machines import NAMES, Array, Machine, found_from, machines, rotation, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
-from tests.text import test_initialise, values
+from tests.text import test_garbage, test_initialise, values
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
 from tests.text.loops.machines import Loop, loops_of
@@ -132,7 +132,7 @@ def test_every_statement_runs() -> None:
         test_initialise.test_no_method_works(loops, test_initialise.fresh)
         test_the_other_assembly_mode_is_refused()
         test_without_control_there_is_no_jacobian()
-        test_refusals.test_what_is_no_number(np.nan)
+        test_garbage.test_garbage_in_one_number(loops[:2] * 2)
         for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
             test_refusals.test_what_is_no_rotation(turn)
         check_axes()
