@@ -65,6 +65,14 @@ class Made:
         residual[:, : len(self.mechanism.task.position)] /= (self.reach + slides)[:, None]
         return np.asarray(residual.max(axis=1))
 
+    def worst(self, slots: Array, statuses: Array, positions: Array, rotations: Array) -> float:
+        """The largest error of all answers of a batch, which are in the assembly mode of the machine."""
+        rows, columns = np.nonzero(statuses == softkin.Status.OK)
+        answers = slots[rows, columns]
+        if isinstance(self.closure, LoopClosure):
+            assert (self.closure.side(self.closure.joints(answers), positions[rows]) > 0).all()
+        return float(self.error(answers, positions[rows], rotations[rows]).max(initial=0.0))
+
 
 @cache
 def made(name: str) -> Made:
