@@ -19,8 +19,7 @@ from tests.javascript.modules import files_of
 from tests.machines.hostile import MARKS
 from tests.machines.test_hostile_text import Elements, pair
 from tests.mechanisms import catalogue, named
-from tests.view.available import available
-from tests.view.driver import prepared
+from tests.view.driver import available, prepared
 from tests.view.pages import ARM, Seen
 
 pytestmark = pytest.mark.slow

@@ -252,3 +252,45 @@ def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
                 robot.jacobian(wrong)
             assert robot.forward_batch([wrong])[3][0] != Status.OK
             assert robot.singularity(wrong).is_singular and robot.singularity_batch([wrong])[0].all()
+
+
+@EVERY_MECHANISM
+def test_metres_give_what_millimetres_give(mechanism: Mechanism) -> None:
+    """The same machine, base and tool in metres: angles are the same, lengths a thousandth."""
+    sample = sample_of(mechanism)
+    given = {
+        p.name: sample.robot.parameters[p.name] * (1e-3 if p.unit.startswith("u") else 1.0)
+        for p in sample.robot.PARAMETERS
+    }
+    small = type(sample.robot)(**given)
+    lengths = np.array([1e-3 if axis.unit == "u" else 1.0 for axis in small.AXES])
+    for tool in tools_of(sample):
+        large = sample.robot.with_tool(tool).with_base(BASE)
+        robot = small.with_tool(_metres(tool)).with_base(_metres(BASE))
+        assert robot.JACOBIAN_ROWS == large.JACOBIAN_ROWS
+        for axes in sample.axes[:3]:
+            frame, configuration = large.forward(axes)
+            found, written = robot.forward(axes * lengths)
+            assert np.abs(found.matrix - _metres(frame).matrix).max() < 1e-11 and written == configuration
+            back = np.array(robot.inverse(_metres(frame), configuration, axes * lengths))
+            assert np.abs(back / lengths - axes).max(initial=0.0) < 1e-6
+
+
+def _metres(frame: Frame) -> Frame:
+    x, y, z = frame.position
+    return Frame((1e-3 * x, 1e-3 * y, 1e-3 * z), frame.rotation)
+
+
+def test_limits_are_those_of_the_bare_machine() -> None:
+    """Limits refuse, with the axis; where they are not tested they do not."""
+    given = {"link_length_1": 325.0, "link_length_2": 225.0, "lower_a3": -50.0, "upper_a3": 80.0}
+    for checks in (True, False):
+        robot = softkin.Scara4ZCcoupledType1(**given, check_limits=checks).with_tool(ASIDE).with_base(BASE)
+        frame, configuration = robot.forward((10.0, 20.0, 90.0, 30.0))
+        statuses = robot.inverse_batch([frame], None, configuration)[1].tolist()
+        if checks:
+            assert statuses == [Status.UNREACHABLE]
+            found = robot.diagnose(frame, configuration)
+            assert "A3" in found.reason and found.missing == pytest.approx(10.0)
+        else:
+            assert statuses == [Status.OK] and robot.inverse(frame, configuration)[2] == pytest.approx(90.0)

@@ -10,26 +10,24 @@ from softkin import Frame
 from derive.description.mechanism import Mechanism
 from derive.ir.constants import ONE_TURN
 from tests.catalogue.turns.axes import (
+    FEW_STEPS,
+    FEW_WIDTHS,
     FULL,
+    GAP_THAT_NO_STEP_CROSSES,
     MECHANISMS,
     REACH,
+    STEPS,
+    WIDTHS,
     Asked,
     Axes,
     Caller,
     InPython,
     OnController,
-    TurningAxis,
-    turning_axes,
-)
-from tests.catalogue.turns.ranges import (
-    FEW_STEPS,
-    FEW_WIDTHS,
-    GAP_THAT_NO_STEP_CROSSES,
-    STEPS,
-    WIDTHS,
     Range,
+    TurningAxis,
     number_of,
     placed,
+    turning_axes,
 )
 
 CLOSE = 1e-7

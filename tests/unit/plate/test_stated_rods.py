@@ -19,7 +19,7 @@ from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
 from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD
 from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from tests.mechanisms import kinematics_of, named
-from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
+from tests.unit.kinematics.test_turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
 MACHINES = {
     **{name: own for name, (own, _) in TURNING_INVENTIONS.items()},
