@@ -2,7 +2,6 @@
 
 import os
 import pickle
-import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from derive.emit.language import Part
 from derive.faults import Failure
 from derive.kinematics.kinematics import Evidence
 from derive.pipeline import Built, Work
+from tests.outside import output_of
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,7 @@ def generated(folder: Path) -> Generation:
     output, evidence = folder / "generated", folder / "evidence"
     command = [sys.executable, "-m", "tests.generation", str(output), str(evidence)]
     environment = {**os.environ, "PYTHONHASHSEED": "1"}
-    done = subprocess.run(command, cwd=OUTPUT.parent, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of(command, cwd=OUTPUT.parent, env=environment)
     files = {str(p.relative_to(output)): p.read_bytes() for p in output.rglob("*") if p.is_file()}
     found, modules = pickle.loads(evidence.read_bytes())
     return Generation(files, found, {name: text.encode() for name, text in modules.items()})

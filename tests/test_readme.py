@@ -4,12 +4,13 @@ import ast
 import doctest
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from softkin import catalogue
+
+from tests.outside import output_of
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -99,17 +100,8 @@ def test_a_program_prints_what_the_page_shows(name: str, tmp_path: Path) -> None
     title, code, output = SECTIONS[name]
     assert code == program.read_text(encoding="utf-8")
     assert (ast.get_docstring(ast.parse(code)) or "").startswith(f"{title}: ")
-    done = subprocess.run(
-        [sys.executable, str(program), str(tmp_path)],
-        env={**os.environ, "PYTHONPATH": str(ROOT / "generated/python")},
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=300,
-    )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout == output
+    env = {**os.environ, "PYTHONPATH": str(ROOT / "generated/python")}
+    assert output_of([sys.executable, program, tmp_path], env=env, cwd=tmp_path, timeout=300) == output
     drawn = {path.name for path in tmp_path.glob("*.png") if path.stat().st_size > 3000}
     assert drawn == {path.name for path in (DOCS / "gallery/pictures").glob(f"{name}.png")}
 

@@ -18,6 +18,7 @@ from tests.corpus.dimensions import DIMENSIONS
 from tests.corpus.recording import read
 from tests.mechanisms import kinematics_of, named
 from tests.native.build import SOURCES, headers
+from tests.outside import output_of
 
 ROOT = Path(__file__).parents[2]
 SHARED = {"softkin.c", "softkin.h", "softkin_constants.h", "softkin_rotation.h"}
@@ -108,8 +109,7 @@ def test_the_program_of_the_guide() -> None:
     folder = written({**files_of(part_of("Kin_Scara4_ZCcoupled_Type1")), "main.c": program[1]})
     sources = printed[1].partition(" && ")[0].split()
     compile_in(folder, *sources)
-    found = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=True).stdout
-    assert found == f"{printed[2]}\n"
+    assert output_of([folder / "a.out"]) == f"{printed[2]}\n"
 
 
 @pytest.mark.slow
@@ -158,8 +158,7 @@ def test_typed_calls(name: str, options: tuple[str, ...]) -> None:
     folder = written(files_of(part))
     options = (*options, f"-DMODULE={module}", f'-DHEADER="{module}.h"', f"-DPOSE={_possible(name)}", "-I.")
     compile_in(folder, *SANITIZED, *options, str(TYPED), f"{module}.c", "softkin.c", "-lm")
-    done = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of([folder / "a.out"])
 
 
 def _possible(name: str) -> str:

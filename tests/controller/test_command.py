@@ -23,6 +23,7 @@ from derive.controller.settings import settings_of
 from tests.command.files import RAIL, ROOT
 from tests.controller.pages import GANTRY, PATIENCE, Served, message, message_where, page_of, served, settings
 from tests.controller.test_server import Given
+from tests.outside import output_of
 
 
 @pytest.fixture
@@ -104,8 +105,7 @@ def test_no_other_command_loads_the_servers() -> None:
     code = (
         "import sys; from derive.command import line; print({'aiohttp', 'asyncua', 'cryptography'} & set(sys.modules))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout == "set()\n"
+    assert output_of([sys.executable, "-c", code], cwd=ROOT) == "set()\n"
 
 
 TEXT = (ROOT / "docs/LIVE.md").read_text(encoding="utf-8")

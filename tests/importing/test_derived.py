@@ -2,7 +2,6 @@
 
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from derive.pipeline import Built
 from tests.importing.kinematics import assert_is, by_yourdfpy, described, facing, imported, imported_text
 from tests.importing.robots import COLLECTION, File, joint, urdf, written
 from tests.machines.made import built_of, imported_class
+from tests.outside import temporary
 
 SOLUTIONS = {
     "KR 16": 8, "KR 120": 8, "KR 210": 8, "iiwa": 8, "Puma 560": 8, "UR5e": 8, "Fanuc": 8, "Staubli": 8, "AL5D": 4,
@@ -31,7 +31,7 @@ EVERY = pytest.mark.parametrize(
 @cache
 def derived(name: str) -> tuple[File, Imported, Built, type[softkin.Mechanism]]:
     """A robot file, its description, what was derived, and the class of the generated package."""
-    folder = Path(mkdtemp(prefix="imported-"))
+    folder = temporary("imported")
     file = COLLECTION.get(name) or written(name, FEWEST_DIGITS, folder)
     found = imported(file.path, file.base, file.tip)
     mechanism = described(found, folder)

@@ -3,7 +3,6 @@
 import json
 import shutil
 import struct
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,6 +21,7 @@ from derive.pipeline import work_of
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of, part_of, written
 from tests.mechanisms import catalogue
+from tests.outside import output_of
 
 _CORNERS = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
 
@@ -92,8 +92,7 @@ def own_page(folder: Path) -> Path:
 def _run(folder: Path, *arguments: str) -> None:
     command = [sys.executable, "-m", "derive", *arguments]
     environment = {"PYTHONPATH": str(OUTPUT.parent), "PATH": "", "HOME": str(folder)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of(command, cwd=folder, env=environment)
 
 
 ROOT = Path(__file__).parents[2]

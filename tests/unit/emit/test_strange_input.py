@@ -2,7 +2,6 @@
 
 import os
 import pickle
-import subprocess
 import sys
 import tomllib
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from derive.report import branch_stretches
 from derive.report.branch_stretches import MOST_KEPT, MOST_SIDES, stretches_of
 from tests.catalogue.references import held_at
 from tests.mechanisms import catalogue, kinematics_of, named
+from tests.outside import output_of
 
 ROOT = Path(__file__).resolve().parents[3]
 MECHANISMS = [m for _, m in catalogue()]
@@ -235,10 +235,7 @@ for language in languages(wanted=LANGUAGES):
 
 def _text(seed: str) -> str:
     environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        [sys.executable, "-c", _TEXT], env=environment, cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    return done.stdout
+    return output_of([sys.executable, "-c", _TEXT], env=environment, cwd=ROOT)
 
 
 @pytest.mark.slow
