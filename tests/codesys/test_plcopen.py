@@ -210,13 +210,9 @@ def test_an_interface_is_an_entry_of_the_project() -> None:
     at_axes = ["Jacobian", "AxisVelocities", "AxisAccelerations", "Margins"]
     assert list(methods) == ["Diagnose", *at_axes, *[f"{name}From" for name in at_axes], "InitializeReason"]
     assert not list(interface.iter("{*}body"))
-    sections = {name: [_local(e) for e in _only(m, "p:interface")] for name, m in methods.items()}
+    sections = {name: [etree.QName(e).localname for e in _only(m, "p:interface")] for name, m in methods.items()}
     assert sections["Margins"] == ["returnType", "inOutVars", "inOutVars", "outputVars"]
     assert wholes(root)["ISoftkin"].own.declaration.endswith("INTERFACE ISoftkin EXTENDS __SYSTEM.IQueryInterface")
-
-
-def _local(element: Element) -> str:
-    return etree.QName(element).localname
 
 
 def test_an_independent_class_model_reads_it() -> None:
