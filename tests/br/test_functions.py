@@ -16,8 +16,9 @@ from derive.emit.around_c.package import br, commands_all_axes
 from derive.emit.c.description import inputs
 from derive.emit.c.package import module_name
 from tests.corpus.dimensions import DIMENSIONS
-from tests.linuxcnc.machine import about, differs, recorded
+from tests.linuxcnc.machine import differs, recorded
 from tests.mechanisms import catalogue, kinematics_of, named
+from tests.orthonormal import about
 from tests.outside import output_of, temporary, written
 
 pytestmark = pytest.mark.broad

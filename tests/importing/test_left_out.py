@@ -17,6 +17,7 @@ from derive.pipeline import derive_one
 from tests.importing.kinematics import by_yourdfpy, described, imported_text, refused
 from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 from tests.machines.made import imported_class
+from tests.orthonormal import random_rotations
 
 PLAIN = urdf(
     "arm",
@@ -205,18 +206,13 @@ def _file(name: str, folder: Path) -> File:
     return File(path, "link0", f"link{len(ROWS[name]) + 1}")
 
 
-def _turned(rng: np.random.Generator) -> Array:
-    rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    return np.asarray(rotation * np.sign(np.linalg.det(rotation)))
-
-
 def _joints(arm: Arm, seed: int) -> Iterator[tuple[str, ...]]:
     """The joints of an arm, each at any place on its axis, in a frame that is turned anyhow."""
     rng = np.random.default_rng(seed)
     before = np.eye(4)
     for k, line in enumerate(arm.lines, 1):
         here = np.eye(4)
-        here[:3, :3], here[:3, 3] = _turned(rng), line.point + rng.uniform(-0.1, 0.1) * line.direction
+        here[:3, :3], here[:3, 3] = random_rotations(1, rng)[0], line.point + rng.uniform(-0.1, 0.1) * line.direction
         axis = here[:3, :3].T @ line.direction
         kind = "prismatic" if line.kind is Kind.LINEAR else "revolute"
         yield joint(f"a{k}", kind, *_origin(before, here), axis=" ".join(map(repr, axis.tolist())))
