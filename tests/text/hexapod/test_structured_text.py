@@ -11,7 +11,7 @@ from softkin import Status
 from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod import test_refusals
-from tests.catalogue.hexapod.machines import NAMES, Array, Machine, found_from, machines, rotation, without_mode
+from tests.catalogue.hexapod.machines import Array, Machine, found_from, machines, rotation, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
 from tests.text import test_garbage, test_initialise, values
@@ -42,18 +42,6 @@ def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
     positions, turns = machine.poses(count)
     for position, turn in zip(positions, turns, strict=True):
         compare(machine, block, position, turn)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_what_python_refuses(name: str) -> None:
-    """The block refuses the poses that the Python package refuses, and solves the others with equal axes."""
-    machine, block = machines()[name], controller(name)
-    positions, turns = machine.poses(30, turn=120.0)
-    axes, status = machine.robot.inverse_batch(positions, turns)
-    assert {Status.OK, Status.UNREACHABLE} == set(status)
-    for i, (position, turn) in enumerate(zip(positions, turns, strict=True)):
-        answer = block.inverse(position, turn, (), (0.0,) * 6)
-        assert answer == ((OK, tuple(axes[i])) if status[i] == Status.OK else (UNREACHABLE, None))
 
 
 def test_blocks_share_nothing() -> None:
