@@ -23,7 +23,7 @@ from hypothesis import settings
 from tests.view.driver import BROWSER
 
 if TYPE_CHECKING:
-    from tests.fresh import Generation
+    from tests.generation import Generation
 
 settings.register_profile("softkin", deadline=None, derandomize=True)
 # Every property is tried in `make quick`; `make test` tries a hundred examples of it.
@@ -99,7 +99,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 @pytest.fixture(scope="session")
 def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
     """A fresh generation of the whole catalogue."""
-    from tests.fresh import generated
+    from tests.generation import generated
 
     return generated(tmp_path_factory.mktemp("generation"))
 

@@ -1,21 +1,44 @@
-"""A generation as `make generate` does it, whose evidence is kept: `python -m tests.generation FOLDER FILE`.
+"""One fresh generation for all tests of a process, whose evidence is kept: `python -m tests.generation FOLDER FILE`."""
 
-The JavaScript of the same machines is kept, too: it was written with them, and `generated/` does not hold it.
-"""
-
+import os
 import pickle
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from unittest.mock import patch
 
 from derive.command import catalogue as command
+from derive.command.catalogue import OUTPUT
 from derive.command.line import main
 from derive.emit.javascript import package as javascript
 from derive.emit.language import Part
 from derive.faults import Failure
 from derive.kinematics.kinematics import Evidence
 from derive.pipeline import Built, Work
+from tests.outside import output_of
+
+
+@dataclass(frozen=True)
+class Generation:
+    """What a fresh generation gives."""
+
+    files: Mapping[str, bytes]
+    evidence: Mapping[str, Evidence]
+    """By mechanism."""
+    modules: Mapping[str, bytes]
+    """The same machines in JavaScript."""
+
+
+def generated(folder: Path) -> Generation:
+    """In the order of hashing of one seed; `make generate` and `make check` each have one that nobody chose."""
+    output, evidence = folder / "generated", folder / "evidence"
+    command = [sys.executable, "-m", "tests.generation", str(output), str(evidence)]
+    environment = {**os.environ, "PYTHONHASHSEED": "1"}
+    output_of(command, cwd=OUTPUT.parent, env=environment)
+    files = {str(p.relative_to(output)): p.read_bytes() for p in output.rglob("*") if p.is_file()}
+    found, modules = pickle.loads(evidence.read_bytes())
+    return Generation(files, found, {name: text.encode() for name, text in modules.items()})
 
 
 def generate(output: str, evidence: str) -> int:

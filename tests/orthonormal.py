@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
@@ -15,6 +16,21 @@ def rodrigues(axis: ArrayLike, angle: float) -> Array:
     """The rotation about a unit vector by an angle in radians."""
     cross = np.cross(np.eye(3), axis)
     return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
+
+
+def about(axis: int, degrees: float) -> Array:
+    """The rotation about a coordinate axis."""
+    turned, (i, j) = np.eye(3), ((axis + 1) % 3, (axis + 2) % 3)
+    turned[i, i] = turned[j, j] = np.cos(np.radians(degrees))
+    turned[j, i] = np.sin(np.radians(degrees))
+    turned[i, j] = -turned[j, i]
+    return turned
+
+
+def random_rotations(count: int, seed: int | Generator) -> Array:
+    """Any rotations, evenly: from the columns of random matrices."""
+    matrices, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(count, 3, 3)))
+    return np.asarray(matrices * np.linalg.det(matrices)[:, None, None])
 
 
 def error(matrix: Array) -> float:

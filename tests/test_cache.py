@@ -82,7 +82,6 @@ def swap(path: Path) -> None:
 
 @pytest.mark.parametrize("damage", [damage_a_byte, cut_off, empty, swap])
 def test_a_damaged_entry_is_noticed(tmp_path: Path, damage: Callable[[Path], None]) -> None:
-    """A damaged entry of the cache is not read."""
     cache = Cache(tmp_path / "cache")
     for name in ("one", "two"):
         cache.write(key_of(name), {"name": name, "text": "x" * 100})
@@ -93,7 +92,6 @@ def test_a_damaged_entry_is_noticed(tmp_path: Path, damage: Callable[[Path], Non
 
 
 def test_a_damaged_entry_is_derived_anew_and_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A mechanism with a damaged entry is derived again, with a message."""
     (folder / FILES[1]).unlink()
     first, derived, _ = generated(folder, capsys)
     entries = list(Path(f"{folder.parent / 'generated'}.cache").iterdir())
@@ -222,7 +220,6 @@ def test_keys_tell_their_parts_apart() -> None:
 
 
 def test_the_entries_last_used_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of too many entries those that were used last are kept."""
     monkeypatch.setattr(caching, "_KEPT", 2)
     cache = Cache(tmp_path)
     for age, name in enumerate(("new", "old", "oldest")):

@@ -1,13 +1,14 @@
 """docs/COMPILER.md: every change that it shows is made in a copy of the source, and what comes of it works."""
 
 import re
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from shutil import copytree
 
 import pytest
+
+from tests.outside import output_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "docs/COMPILER.md").read_text(encoding="utf-8")
@@ -69,9 +70,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(folder: Path, *arguments: str) -> str:
-    done = subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    return output_of([sys.executable, *arguments], cwd=folder)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from derive.command.catalogue import OUTPUT
 from derive.description.catalogue import Entry
 from derive.description.mechanism import Role
 from derive.output import differences
-from tests.fresh import Generation
+from tests.generation import Generation
 from tests.mechanisms import catalogue
 
 pytestmark = pytest.mark.slow

@@ -1,7 +1,6 @@
 """The site that `make docs` builds: every link leads somewhere, nothing comes from a network, its programs run."""
 
 import re
-import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -9,6 +8,8 @@ from urllib.parse import unquote
 
 import pytest
 import softkin
+
+from tests.outside import output_of
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,8 +40,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Page]:
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, str(ROOT / "docs/site/build.py"), str(folder)]
     paths = {"PYTHONPATH": f"{ROOT}:{ROOT / 'generated/python'}", "PATH": ""}
-    done = subprocess.run(command, cwd=ROOT, env=paths, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of(command, cwd=ROOT, env=paths)
     return {path: Page(path) for path in sorted((folder / "html").rglob("*.html"))}
 
 

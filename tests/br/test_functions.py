@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
@@ -18,8 +16,10 @@ from derive.emit.around_c.package import br, commands_all_axes
 from derive.emit.c.description import inputs
 from derive.emit.c.package import module_name
 from tests.corpus.dimensions import DIMENSIONS
-from tests.linuxcnc.machine import about, differs, recorded
+from tests.linuxcnc.machine import differs, recorded
 from tests.mechanisms import catalogue, kinematics_of, named
+from tests.orthonormal import about
+from tests.outside import output_of, temporary, written
 
 pytestmark = pytest.mark.broad
 
@@ -34,20 +34,16 @@ _Fifteen, _Three = ctypes.c_double * LENGTH, ctypes.c_double * 3
 @cache
 def library(name: str) -> ctypes.CDLL:
     """The functions of a machine: compiled without a warning; the driver, which is no part of them, for this system."""
-    folder = Path(mkdtemp(prefix="br-"))
     part = br.part(kinematics_of(named(name)))
     assert part is not None
-    for path, text in br.files([part]).items():
-        (folder / path).write_text(text, encoding="utf-8")
+    folder = written(br.files([part]), temporary("br"))
     module = module_name(name)
     sources = [folder / file for file in (f"{module}_br.c", f"{module}.c", "softkin_br.c", "softkin.c")]
     driver = [f'-DMACHINE_HEADER="{module}_br.h"', f"-DMACHINE={module}", Path(__file__).parent / "driver.c"]
     driver += ["-DWIRE_FRAME"] if "_br_wire_frame" in part["files"][f"{module}_br.h"] else []
     places = ["-I", folder, "-isystem", STUB]
-    subprocess.run(["gcc", *FLAGS, "-c", "-o", "/dev/null", *places, sources[2]], check=True)
-    subprocess.run(
-        ["gcc", *FLAGS[:2], *FLAGS[-3:], *places, "-o", folder / "br.so", *driver, *sources, "-lm"], check=True
-    )
+    output_of(["gcc", *FLAGS, "-c", "-o", "/dev/null", *places, sources[2]])
+    output_of(["gcc", *FLAGS[:2], *FLAGS[-3:], *places, "-o", folder / "br.so", *driver, *sources, "-lm"])
     return ctypes.CDLL(str(folder / "br.so"))
 
 

@@ -1,17 +1,15 @@
 """The sources of a mechanism, compiled with a program that answers questions about it."""
 
-import atexit
 import os
 import re
-import shutil
 import subprocess
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 
 from derive.emit.c import package
 from derive.emit.language import Part
+from tests import outside
 from tests.mechanisms import kinematics_of, named
 
 COMPILER = os.environ.get("CC", "gcc")
@@ -87,11 +85,7 @@ def refused_in(folder: Path, *options: str) -> str:
 
 def written(texts: Mapping[str, str]) -> Path:
     """A folder of files, which goes when the tests are over."""
-    folder = Path(mkdtemp(prefix="c-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    for path, text in texts.items():
-        (folder / path).write_text(text, encoding="utf-8")
-    return folder
+    return outside.written(texts, outside.temporary("c"))
 
 
 def files_of(part: Part) -> Mapping[str, str]:

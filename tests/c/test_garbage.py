@@ -11,6 +11,7 @@ from derive.emit.c.description import inputs
 from tests.c.machine import ask, described
 from tests.c.programs import compiled, files_of, part_of, program_of, refused_in, written
 from tests.catalogue.extreme import extreme_dimensions
+from tests.catalogue.refusals import status_of
 from tests.corpus.dimensions import DIMENSIONS
 from tests.linuxcnc import module
 from tests.mechanisms import kinematics_of, named
@@ -76,11 +77,7 @@ def _read(call: list[Any]) -> list[float]:
 
 def _is_allowed(robot: type[softkin.Mechanism], given: dict[str, float]) -> bool:
     own = {key: value for key, value in given.items() if key in {p.name for p in robot.PARAMETERS}}
-    try:
-        robot(**own)
-    except softkin.KinematicsError:
-        return False
-    return True
+    return status_of(robot, **own) is softkin.Status.OK
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
-"""What is written: its width, what it includes, what it says of a machine, its use, and the runtime file by file."""
+"""What is written, and its calls with the types of a machine: width, includes, use, and the runtime file by file."""
 
 import re
 import subprocess
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -12,10 +13,12 @@ from derive.emit.c.printer import is_reserved, member, spelled
 from derive.emit.language import RUNTIME
 from derive.ir.constants import LEAST
 from tests.c.machine import described
-from tests.c.programs import COMPILER, STRICT, compile_in, files_of, part_of, program_of, written
+from tests.c.programs import COMPILER, SANITIZED, STRICT, compile_in, files_of, part_of, program_of, written
 from tests.corpus.dimensions import DIMENSIONS
+from tests.corpus.recording import read
 from tests.mechanisms import kinematics_of, named
 from tests.native.build import SOURCES, headers
+from tests.outside import output_of
 
 ROOT = Path(__file__).parents[2]
 SHARED = {"softkin.c", "softkin.h", "softkin_constants.h", "softkin_rotation.h"}
@@ -106,8 +109,7 @@ def test_the_program_of_the_guide() -> None:
     folder = written({**files_of(part_of("Kin_Scara4_ZCcoupled_Type1")), "main.c": program[1]})
     sources = printed[1].partition(" && ")[0].split()
     compile_in(folder, *sources)
-    found = subprocess.run([folder / "a.out"], capture_output=True, text=True, check=True).stdout
-    assert found == f"{printed[2]}\n"
+    assert output_of([folder / "a.out"]) == f"{printed[2]}\n"
 
 
 @pytest.mark.slow
@@ -135,3 +137,38 @@ def test_it_compiles_alone(path: Path) -> None:
     """No warning, and no name that another file would have to bring."""
     folders = [f"-I{folder}" for folder in (*FOLDERS, SOURCES, headers())]
     subprocess.run([COMPILER, *STRICT, *folders, "-fsyntax-only", "-x", "c", path], check=True)
+
+
+TYPED = Path(__file__).with_name("typed.c")
+
+
+@pytest.mark.slow("Kin_Ac6")
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("Kin_Scara4_ZCcoupled_Type1", ()),
+        ("Softkin_Planar_3RRR", ("-DSTARTS",)),
+        ("Kin_Ac6_RZRYRYRXRYRZ_J6Offset", ("-DSEARCHED",)),
+    ],
+)
+def test_typed_calls(name: str, options: tuple[str, ...]) -> None:
+    """They answer the same, also where a frame or a reference is an argument and the place of the result."""
+    part = part_of(name)
+    module = part["index"]["module"]
+    folder = written(files_of(part))
+    options = (*options, f"-DMODULE={module}", f'-DHEADER="{module}.h"', f"-DPOSE={_possible(name)}", "-I.")
+    compile_in(folder, *SANITIZED, *options, str(TYPED), f"{module}.c", "softkin.c", "-lm")
+    output_of([folder / "a.out"])
+
+
+def _possible(name: str) -> str:
+    """Axis values with which the machine of nominal dimensions can stand."""
+    made = softkin.catalogue()[name]
+    robot = made(**{p.name: p.nominal for p in named(name).parameters if p.fixed is None})
+    asked = [question for part in read(name) for question in part["asked"]]
+    for question in (q for q in asked if q["call"] == "forward" and q["kind"] == "regular"):
+        with suppress(softkin.KinematicsError):
+            frame, configuration = robot.forward(question["axes"])
+            if robot.inverse(frame, configuration, question["axes"]):
+                return ",".join(map(repr, question["axes"]))
+    raise LookupError(name)

@@ -13,8 +13,7 @@ from scipy.spatial.transform import Rotation
 from softkin import Calibration, KinematicsError, Mechanism, Status
 
 from derive.command.line import main
-from tests.calibration.machines import LOOPS, SERIAL, Planted, drawn_axes, planted
-from tests.calibration.truth import Truth
+from tests.calibration.machines import LOOPS, SERIAL, Planted, Truth, drawn_axes, planted
 
 Array = NDArray[np.float64]
 POSITION, TURN = 0.01, 1e-4

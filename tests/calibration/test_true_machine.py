@@ -10,8 +10,7 @@ import softkin
 from softkin import Frame, KinematicsError, Mechanism, Status
 from softkin._start import IterativeForward
 
-from tests.calibration.machines import LOOPS, SERIAL, Planted, drawn_axes, planted
-from tests.calibration.truth import Truth
+from tests.calibration.machines import LOOPS, SERIAL, Planted, Truth, drawn_axes, planted
 from tests.catalogue.robots import KR6_R900
 from tests.mechanisms import named
 

@@ -17,9 +17,8 @@ from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.deviations import with_deviations
 from derive.kinematics.kinematics import Kinematics
 from derive.witness import witness
-from tests.calibration.machines import Planted, drawn_axes, planted
+from tests.calibration.machines import Planted, Truth, drawn_axes, planted
 from tests.calibration.test_true_machine import EXACT, apart, lost
-from tests.calibration.truth import Truth
 from tests.languages.language import LANGUAGES, Language
 from tests.machines.made import built_of, imported_class
 from tests.mechanisms import catalogue, kinematics_of, named

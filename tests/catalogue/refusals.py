@@ -1,4 +1,4 @@
-"""Calls that must be refused."""
+"""Calls that are refused, or must be."""
 
 from collections.abc import Callable
 
@@ -15,3 +15,12 @@ def refusal(call: Callable[..., object], *arguments: object, says: str | None = 
     assert "\n" not in message
     assert len(message) < 300
     return error.value.status
+
+
+def status_of(call: Callable[..., object], *arguments: object, **given: object) -> Status:
+    """The status that a call ends with."""
+    try:
+        call(*arguments, **given)
+    except KinematicsError as refused:
+        return refused.status
+    return Status.OK

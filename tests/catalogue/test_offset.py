@@ -51,15 +51,11 @@ def _moving(machine: Machine) -> list[int]:
 
     Held ones and, of the others, the last turning ones stay where the reference is.
     """
-    solved = [i for i in range(_count(machine)) if machine.solved[i]]
+    solved = [i for i, _ in enumerate(machine.mechanism.joints) if machine.solved[i]]
     excess = len(solved) - len(machine.closure.task)
     turning = [i for i in solved if machine.closure.angles[i]]
     frozen = turning[len(turning) - excess :] if excess > 0 else []
     return [i for i in solved if i not in frozen]
-
-
-def _count(machine: Machine) -> int:
-    return len(machine.mechanism.joints)
 
 
 def drawn(machine: Machine, seed: int) -> tuple[Array, Array]:

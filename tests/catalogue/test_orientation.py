@@ -7,14 +7,9 @@ from softkin import Status
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
+from tests.orthonormal import random_rotations
 
 COUNT = 60
-
-
-def some_rotations(count: int, seed: int) -> Array:
-    """Any rotations, evenly: from the columns of random matrices."""
-    matrices, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(count, 3, 3)))
-    return matrices * np.linalg.det(matrices)[:, None, None]
 
 
 def about_z(angle: Array) -> Array:
@@ -48,7 +43,7 @@ def test_it_is_offered_where_the_machine_chooses_the_twist(mechanism: Mechanism,
 def test_the_tool_direction_is_swung_and_the_twist_kept(machines: tuple[Machine, ...]) -> None:
     """The flange's z goes to the machine's by the smallest rotation: what is left is a rotation it can have."""
     for machine in turning(machines):
-        rotations = some_rotations(COUNT, 1)
+        rotations = random_rotations(COUNT, 1)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(2)))[1][0]
         expected = np.array([swing(r[:, 2], flange[:, 2]) @ r for r in rotations])
         assert np.abs(projected(machine, rotations) - expected).max() < 1e-9
@@ -58,7 +53,7 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
     """Nearer than every rotation of a fine turn of the flange."""
     angles = np.linspace(-np.pi, np.pi, 7201)
     for machine in turning(machines)[1:4]:
-        rotations = some_rotations(COUNT // 3, 3)
+        rotations = random_rotations(COUNT // 3, 3)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(4)))[1][0]
         candidates = about_z(angles) @ flange
         for rotation, found in zip(rotations, projected(machine, rotations), strict=True):
@@ -69,7 +64,7 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
 
 def test_projecting_again_changes_nothing(machines: tuple[Machine, ...]) -> None:
     for machine in turning(machines):
-        once = projected(machine, some_rotations(COUNT, 5))
+        once = projected(machine, random_rotations(COUNT, 5))
         assert np.abs(projected(machine, once) - once).max() < 1e-14
         reachable = machine.closure.poses(machine.draw(COUNT, np.random.default_rng(6)))[1]
         assert np.abs(projected(machine, reachable) - reachable).max() < 1e-14
@@ -80,7 +75,7 @@ def test_the_inverse_takes_the_projected_rotation(machines: tuple[Machine, ...])
     for machine in turning(machines):
         axes = machine.draw(COUNT, np.random.default_rng(7))
         positions, rotations = machine.closure.poses(axes)
-        directions = some_rotations(COUNT, 8)[:, :, 2]
+        directions = random_rotations(COUNT, 8)[:, :, 2]
         tilted = np.array([swing(r[:, 2], d) @ r for r, d in zip(rotations, directions, strict=True)])
         configurations = machine.robot.forward_batch(axes)[2]
         found, statuses = machine.robot.inverse_batch(positions, tilted, configurations, axes)

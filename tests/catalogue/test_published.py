@@ -7,6 +7,7 @@ import pytest
 import softkin
 
 from tests.catalogue.robots import UR5, UR10
+from tests.orthonormal import about
 
 LINUXCNC = (
     # axes A1, A2, A4, then x, y and the turn c of LinuxCNC's scarakins with links 340 and 250
@@ -28,11 +29,6 @@ SIX_DIGITS = 1e-5
 """Half a unit of the sixth digit of three angles, in degrees, moves the end of a 550 mm arm by 8e-6 mm."""
 
 
-def about_z(degrees: float) -> tuple[tuple[float, ...], ...]:
-    c, s = cos(radians(degrees)), sin(radians(degrees))
-    return ((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0))
-
-
 @pytest.mark.parametrize("name", ["Kin_Scara4_ZCcoupled_Type1", "Kin_Scara4_CCZC_ZCcoupled"])
 @pytest.mark.parametrize(("angles", "position", "turn"), LINUXCNC)
 def test_scara_of_linuxcnc(name: str, angles: tuple[float, ...], position: tuple[float, ...], turn: float) -> None:
@@ -40,9 +36,9 @@ def test_scara_of_linuxcnc(name: str, angles: tuple[float, ...], position: tuple
     axes = (angles[0], angles[1], 37.0, angles[2])
     frame, configuration = robot.forward(axes)
     assert frame.position == pytest.approx((*position, 37.0), abs=1e-11)
-    assert np.allclose(frame.rotation, about_z(turn), rtol=0, atol=1e-14)
+    assert np.allclose(frame.rotation, about(2, turn), rtol=0, atol=1e-14)
     assert configuration[0] == (1 if angles[1] > 0 else 2)
-    assert robot.inverse(((*position, 37.0), about_z(turn)), configuration) == pytest.approx(axes, abs=1e-10)
+    assert robot.inverse(((*position, 37.0), about(2, turn)), configuration) == pytest.approx(axes, abs=1e-10)
 
 
 def test_three_axis_scara_of_linuxcnc() -> None:
@@ -52,7 +48,7 @@ def test_three_axis_scara_of_linuxcnc() -> None:
             robot = softkin.catalogue()[name](**{f"{word}_length_1": 340.0, f"{word}_length_2": 250.0})
             frame, _ = robot.forward((angles[0], angles[1], -3.0))
             assert frame.position == pytest.approx((*position, -3.0), abs=1e-11)
-            assert np.allclose(frame.rotation, about_z(angles[0] + angles[1]), rtol=0, atol=1e-14)
+            assert np.allclose(frame.rotation, about(2, angles[0] + angles[1]), rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize(("tilt", "axes", "position"), TRUNNIONS)
@@ -83,12 +79,12 @@ def sample() -> softkin.Mechanism:
 def test_sample_of_the_manual() -> None:
     frame, configuration = sample().forward(SAMPLE)
     assert frame.position == pytest.approx(SAMPLE_POSITION, abs=SIX_DIGITS)
-    assert np.allclose(frame.rotation, about_z(-129.963889 - 42.330798 - 496.124887), rtol=0, atol=1e-14)
+    assert np.allclose(frame.rotation, about(2, -129.963889 - 42.330798 - 496.124887), rtol=0, atol=1e-14)
     assert configuration == (2, -1, 1, 1)  # left elbow; A4 one turn below, A1 and A2 on the first turn
 
 
 def test_way_back_of_the_sample() -> None:
-    rotation = about_z(-129.963889 - 42.330798 - 496.124887)
+    rotation = about(2, -129.963889 - 42.330798 - 496.124887)
     axes = sample().inverse((SAMPLE_POSITION, rotation), (2, -1, 1, 1))
     assert axes == pytest.approx(SAMPLE, abs=1e-6)
     near = sample().inverse((SAMPLE_POSITION, rotation), (0, 0, 0, 0), reference=(-120, -50, 0, -500))
@@ -97,7 +93,7 @@ def test_way_back_of_the_sample() -> None:
 
 def test_the_period_of_a4_moves_a3() -> None:
     """One turn more of A4 lowers the quill by its pitch less: the period is chosen before A3 is computed."""
-    frame = SAMPLE_POSITION, about_z(-129.963889 - 42.330798 - 496.124887)
+    frame = SAMPLE_POSITION, about(2, -129.963889 - 42.330798 - 496.124887)
     below = sample().inverse(frame, (2, -1, 1, 1))
     above = sample().inverse(frame, (2, 1, 1, 1))
     assert np.subtract(above, below) == pytest.approx((0.0, 0.0, 20.0, 360.0), abs=1e-9)
@@ -148,7 +144,7 @@ def test_belt_arm_with_motors_in_the_base() -> None:
     robot = softkin.SCCC(link_length_1=300.0, link_length_2=250.0, coupling_12=-1.0, coupling_23=-1.0)
     frame, configuration = robot.forward((90.0, 30.0, -50.0))
     assert frame.position == pytest.approx((250 * cos(radians(30)), 300 + 250 * sin(radians(30)), 0.0), abs=1e-12)
-    assert np.allclose(frame.rotation, about_z(30.0 - 50.0 - 30.0), rtol=0, atol=1e-14)
+    assert np.allclose(frame.rotation, about(2, 30.0 - 50.0 - 30.0), rtol=0, atol=1e-14)
     assert configuration == (2, 1, 1, 1)
 
 

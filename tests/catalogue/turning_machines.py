@@ -123,22 +123,18 @@ def turning_machines_of(mechanism: Mechanism) -> tuple[TurningMachine, ...]:
     """As it is drawn, in metres, and with no two dimensions alike; with home in other branches, and elsewhere."""
     rng = np.random.default_rng(23)
     nominal = {p.name: p.nominal for p in mechanism.parameters}
+    known = {p.name for p in softkin.catalogue()[mechanism.name].PARAMETERS}
     found = [turning_machine(mechanism, "nominal", nominal)]
     flags = [f"home_{b.name}_{b.names[1]}" for b in mechanism.branches]
     while len(found) < 4:
         given = {p.name: _near(p, rng) for p in mechanism.parameters}
         given |= {j.offset.name: float(rng.uniform(-30.0, 30.0)) for j in mechanism.joints}
-        told = {name: float(rng.integers(2)) for name in flags if name in softkin_parameters(mechanism)}
+        told = {name: float(rng.integers(2)) for name in flags if name in known}
         try:
             found.append(turning_machine(mechanism, f"random {len(found)}", given | (told if len(found) > 1 else {})))
         except softkin.KinematicsError as refused:
             assert refused.status is softkin.Status.NOT_INITIALIZED  # noqa: PT017 - dimensions that form no machine
     return tuple(found)
-
-
-def softkin_parameters(mechanism: Mechanism) -> set[str]:
-    """The names of the parameters of the generated class."""
-    return {p.name for p in softkin.catalogue()[mechanism.name].PARAMETERS}
 
 
 def turning_machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> TurningMachine:

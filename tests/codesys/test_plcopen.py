@@ -39,7 +39,6 @@ def errors(text: str) -> list[str]:
 
 
 def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
-    """There is a PLCopenXML file for every mechanism, and one with all of them."""
     found = {str(p.relative_to(ROOT)) for p in ROOT.rglob("*.xml")}
     assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"}
     assert len(UNITS) >= 30
@@ -79,7 +78,6 @@ def test_what_is_read_back_compiles() -> None:
 
 
 def test_folders_are_those_of_the_files() -> None:
-    """The folders in the file are those in which the `.st` files are."""
     wanted: dict[str, list[str]] = {}
     for name, text in FILES.items():
         wanted.setdefault(name.split("/")[0], []).extend(p.path for p in parts_of(text) if "." not in p.path)
@@ -192,18 +190,9 @@ def test_what_the_standard_has_no_element_for() -> None:
         for word in ("Private", "Protected")
     )
     assert protected == [
-        "Describe",
-        "ReadInputs",
-        "FindPose",
-        "SolveBranch",
-        "ReasonOf",
-        "FindJacobian",
-        "FindBias",
-        "FindMargins",
-        "FindOrientation",
-        "FindOffsetBranches",
-        "SolveOffsetBranch",
-    ]
+        "Describe", "ReadInputs", "FindPose", "SolveBranch", "ReasonOf", "FindJacobian", "FindBias", "FindMargins",
+        "FindOrientation", "FindOffsetBranches", "SolveOffsetBranch",
+    ]  # fmt: skip
     assert [e.text for e in pou.iter("{*}Extends")] == ["Softkin_Kinematics"]
     assert private == []
     base = _only(root, ".//p:pou[@name='Softkin_Kinematics']")
@@ -221,13 +210,9 @@ def test_an_interface_is_an_entry_of_the_project() -> None:
     at_axes = ["Jacobian", "AxisVelocities", "AxisAccelerations", "Margins"]
     assert list(methods) == ["Diagnose", *at_axes, *[f"{name}From" for name in at_axes], "InitializeReason"]
     assert not list(interface.iter("{*}body"))
-    sections = {name: [_local(e) for e in _only(m, "p:interface")] for name, m in methods.items()}
+    sections = {name: [etree.QName(e).localname for e in _only(m, "p:interface")] for name, m in methods.items()}
     assert sections["Margins"] == ["returnType", "inOutVars", "inOutVars", "outputVars"]
     assert wholes(root)["ISoftkin"].own.declaration.endswith("INTERFACE ISoftkin EXTENDS __SYSTEM.IQueryInterface")
-
-
-def _local(element: Element) -> str:
-    return etree.QName(element).localname
 
 
 def test_an_independent_class_model_reads_it() -> None:

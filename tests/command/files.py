@@ -1,6 +1,5 @@
 """A folder of a user: description files, and commands that run in it."""
 
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ import pytest
 
 from derive.command.line import main
 from derive.command.new import description
+from tests.outside import output_of
 
 ROOT = Path(__file__).resolve().parents[2]
 RAIL = '''\
@@ -60,7 +60,4 @@ def python(code: str, *paths: Path) -> str:
     """What a program prints that finds packages in these folders, and NumPy, alone."""
     numpy = Path(pytest.importorskip("numpy").__file__).parents[1]
     script = f"import sys; sys.path[:0] = {[str(p) for p in paths]!r}; sys.path.append({str(numpy)!r})\n{code}"
-    command = [sys.executable, "-I", "-S", "-c", script]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+    return output_of([sys.executable, "-I", "-S", "-c", script])

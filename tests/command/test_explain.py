@@ -1,13 +1,16 @@
-"""`softkin explain`: the steps of a derivation in plain text, and the branches that nobody named."""
+"""`softkin explain` and `softkin like`: the steps of a derivation, and vendors' names with their parameters."""
 
 import re
 
 import pytest
 
 from derive.command.explain import explanation
+from derive.command.like import known, table
 from derive.description.catalogue import MECHANISMS, load
-from tests.command.files import RAIL, SCARA, Folder
+from derive.five_axes import ORDERS
+from tests.command.files import RAIL, ROOT, SCARA, Folder
 from tests.command.wrong import changed
+from tests.mechanisms import catalogue
 from tests.unit.kinematics.test_search_choice import SIDEWAYS, arm
 
 
@@ -126,3 +129,36 @@ def test_the_steps_before_a_refusal_are_shown(folder: Folder) -> None:
     said = folder.run("explain", "cubic.py")
     assert said.status == 2 and "no subproblem determines a2: 1 unknown in 1 equation" in said.err
     assert "Inverse kinematics, as far as it goes\n  1. A1 <- affine <- x\n" in said.out, said.out
+
+
+TABLE = {m.name: m for _, m in catalogue()}
+
+
+def test_it_finds_by_vendor_and_name(folder: Folder) -> None:
+    said = folder.run("like", "linuxcnc", "XYZAC-trt")
+    assert said.status == 0 and said.out.startswith("LinuxCNC xyzac-trt-kins: Softkin_TableTable_AC\n")
+    assert "y-offset = -pivot_y" in said.out and "published in: 5-Axis Kinematics, and the source" in said.out
+    assert folder.run("like", "klipper").out.count("Klipper") == sum(k.vendor == "Klipper" for k in known())
+    said = folder.run("like", "perpetuum", "mobile")
+    assert (
+        said.status == 2 and "no kinematics with 'perpetuum mobile' is known: name one of CODESYS, Beckhoff" in said.err
+    )
+
+
+@pytest.mark.parametrize("name", [name for k in known() for name in k.names])
+def test_every_block_and_parameter_is_there(name: str) -> None:
+    """What stands behind an equals sign is a parameter of the block, or of one of its numbered kind."""
+    for entry in (k for k in known() if name in k.names):
+        blocks = re.findall(r"(?:Kin|Softkin)_\w*[a-z0-9A-Z]", entry.block)
+        orders = re.findall(r"(?<!Softkin_)\b\w+Table_[ABC]{2}", entry.block)
+        assert set(blocks) <= set(TABLE) and {o for o in orders if not o.startswith("Softkin")} <= set(ORDERS)
+        named = {p.name for block in blocks for p in TABLE[block].parameters}
+        named |= {f"offset_{j.key}" for block in blocks for j in TABLE[block].joints}
+        words = {
+            w for w in re.findall(r"\b[a-z]+(?:_[a-z0-9]+)+\b", entry.meaning) if not w.startswith(("stepper", "delta"))
+        }
+        assert all(w in named or w.replace("_i", "_1") in named for w in words), words - named
+
+
+def test_the_documentation_has_the_table() -> None:
+    assert table() in (ROOT / "docs/MECHANISMS.md").read_text(encoding="utf-8")

@@ -29,7 +29,7 @@ SAID_ELSEWHERE = {
     "the margins … do not multiply to the determinant of the Jacobian; state the joints and lengths": (
         "tests/unit/kinematics/test_refusals"
     ),
-    "… was given up after … steps": "tests/unit/witness/test_measured_within_bounds",
+    "… was given up after … steps": "tests/unit/witness/test_refusals",
     "the search misses … of … solutions; leave search= out": "tests/unit/witness/test_refusals",
     "the home pose has … assembly modes": "tests/unit/witness/test_refusals",
     "… holds '…', which was not generated: it is not replaced": "test_derive",

@@ -18,6 +18,7 @@ from derive.description.catalogue import MECHANISMS, load
 from derive.description.mechanism import DescriptionError, branch
 from derive.solver.unsolved import Unsolved
 from tests.command.files import RAIL, ROOT
+from tests.outside import output_of
 
 NAMES = {
     "kin_scara4_zccoupled_type1.py": softkin.Scara4ZCcoupledType1,
@@ -104,12 +105,8 @@ def test_without_an_installed_softkin_the_compiler_brings_it(tmp_path: Path) -> 
     """The runtime is a part of the compiler; its folder is gone when the program ends."""
     path = tmp_path / "rail.py"
     path.write_text(RAIL)
-    command = [sys.executable, "-c", WITHOUT, str(path)]
-    done = subprocess.run(
-        command, cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    position, batch, file = re.fullmatch(r"(\(.*?\)) (\[\[.*?\]\]) (.*)\n", done.stdout).groups()  # type: ignore[union-attr]
+    said = output_of([sys.executable, "-c", WITHOUT, str(path)], cwd=tmp_path, env={"PYTHONPATH": str(ROOT)})
+    position, batch, file = re.fullmatch(r"(\(.*?\)) (\[\[.*?\]\]) (.*)\n", said).groups()  # type: ignore[union-attr]
     assert (position, batch) == ("(1.0, 2.0, 0.0)", "[[1. 2.]]")
     assert "runtime" in file and not Path(file).exists()
 

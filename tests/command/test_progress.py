@@ -1,6 +1,5 @@
 """What a command prints while it works: lines, on a terminal a running line, and what takes long."""
 
-import subprocess
 import sys
 from dataclasses import dataclass, field
 from io import StringIO
@@ -13,6 +12,7 @@ from derive.command.stages import Stages, doing
 from derive.lowering import writing
 from derive.progress import Patience, Progress
 from tests.command.files import RAIL, ROOT, Folder
+from tests.outside import output_of
 
 CLEARED = "\r\033[K"
 
@@ -146,8 +146,7 @@ load(Path("loop.py"))
 def test_a_description_that_does_not_end_is_told_with_its_line(tmp_path: Path) -> None:
     """A description is a program; the line is that of the file, also while it calls something else."""
     (tmp_path / "loop.py").write_text("import time\nx = 0\nwhile True:\n    time.sleep(0.01)\n")
-    command = [sys.executable, "-c", ENDLESS]
-    done = subprocess.run(
-        command, cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=120, check=True
+    command, env = [sys.executable, "-c", ENDLESS], {"PYTHONPATH": str(ROOT)}
+    assert (
+        output_of(command, cwd=tmp_path, env=env, timeout=120) == "still running the description: line 4 of loop.py\n"
     )
-    assert done.stdout == "still running the description: line 4 of loop.py\n"

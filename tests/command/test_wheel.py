@@ -2,7 +2,6 @@
 
 import runpy
 import shutil
-import subprocess
 import sys
 import tomllib
 from importlib import import_module
@@ -14,6 +13,7 @@ import pytest
 
 from derive.emit.language import files_in
 from tests.command.files import RAIL, ROOT
+from tests.outside import output_of
 
 
 def packages(include: list[str]) -> list[str]:
@@ -57,8 +57,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def run(installed: Path, folder: Path, program: str) -> None:
     """Run a program in a folder, with what is installed in front of all else."""
     command = [sys.executable, "-c", f"import sys; sys.path[0] = {str(installed)!r}\n{program}"]
-    done = subprocess.run(command, cwd=folder, env={}, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of(command, cwd=folder, env={})
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from tests.corpus.packages import options, use
+from tests.corpus.compare import options, use
 
 
 def main() -> None:

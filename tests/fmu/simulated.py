@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import count
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any
 
 from fmpy import extract, read_model_description
@@ -19,10 +17,10 @@ from derive.emit.fmu import package
 from derive.emit.language import Part
 from tests.c.machine import as_arrays
 from tests.mechanisms import kinematics_of, named
+from tests.outside import temporary
 
 Answer = dict[str, Any]
 _FRAME = ("x", "y", "z", *(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)))
-_FOLDERS: list[Path] = []
 
 
 @dataclass(frozen=True)
@@ -63,18 +61,11 @@ def fmu_of(name: str) -> Fmu:
 
 def written(part: Part) -> Fmu:
     """The FMU of what is written of a machine."""
-    folder = Path(mkdtemp(prefix="fmu-"))
-    _FOLDERS.append(folder)
+    folder = temporary("fmu")
     ((path, data),) = package.finished(package.files([part])).items()
     file = folder / path
     file.write_bytes(data)
     return Fmu(file, Path(extract(str(file), str(folder / "unpacked"))), read_model_description(str(file)))
-
-
-def remove() -> None:
-    """Remove all folders."""
-    while _FOLDERS:
-        shutil.rmtree(_FOLDERS.pop(), ignore_errors=True)
 
 
 class Simulated:

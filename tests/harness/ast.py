@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar, dataclass_transform
 
 from .faults import Place
@@ -10,96 +10,90 @@ from .faults import Place
 _Node = TypeVar("_Node")
 
 
-@dataclass_transform(frozen_default=True, eq_default=False)
+@dataclass_transform(frozen_default=True, eq_default=False, field_specifiers=(field,))
 def node(made: type[_Node]) -> type[_Node]:
     """Nodes compare by identity, so a node can be the key of what is known about it."""
     return dataclass(frozen=True, eq=False, slots=True)(made)
 
 
 @node
-class Literal:
+class Placed:
+    """What stands at a place of its own."""
+
+    at: Place = field(kw_only=True)
+
+
+@node
+class Literal(Placed):
     value: bool | int | float | str
-    at: Place
 
 
 @node
-class Name:
+class Name(Placed):
     text: str
-    at: Place
 
 
 @node
-class Member:
+class Member(Placed):
     object: Expression
     name: str
-    at: Place
 
 
 @node
-class Index:
+class Index(Placed):
     object: Expression
     indices: tuple[Expression, ...]
-    at: Place
 
 
 @node
-class Dereference:
+class Dereference(Placed):
     pointer: Expression
-    at: Place
 
 
 @node
-class This:
-    at: Place
+class This(Placed): ...
 
 
 @node
-class Super:
-    at: Place
+class Super(Placed): ...
 
 
 @node
-class AddressOf:
+class AddressOf(Placed):
     operand: Expression
-    at: Place
 
 
 @node
-class Unary:
+class Unary(Placed):
     operator: str
     operand: Expression
-    at: Place
 
 
 @node
-class Binary:
+class Binary(Placed):
     operator: str
     left: Expression
     right: Expression
-    at: Place
 
 
 @node
-class Argument:
+class Argument(Placed):
     name: str | None
     value: Expression
     is_output: bool
-    at: Place
 
 
 @node
-class Call:
+class Call(Placed):
     function: Expression
     arguments: tuple[Argument, ...]
-    at: Place
 
 
 @node
-class ArrayValues:
+class ArrayValues(Placed):
     """An initial value of an array, repetitions already written out."""
 
     values: tuple[Expression, ...]
-    at: Place
 
 
 Expression = (
@@ -108,47 +102,41 @@ Expression = (
 
 
 @node
-class NamedType:
+class NamedType(Placed):
     text: str
-    at: Place
 
 
 @node
-class StringText:
+class StringText(Placed):
     text: str
     length: int
-    at: Place
 
 
 @node
-class ArrayText:
+class ArrayText(Placed):
     text: str
     bounds: tuple[tuple[Expression, Expression], ...]
     element: TypeText
-    at: Place
 
 
 @node
-class PointerText:
+class PointerText(Placed):
     text: str
     target: TypeText
-    at: Place
 
 
 TypeText = NamedType | StringText | ArrayText | PointerText
 
 
 @node
-class Assign:
+class Assign(Placed):
     target: Expression
     value: Expression
-    at: Place
 
 
 @node
-class CallStatement:
+class CallStatement(Placed):
     call: Call
-    at: Place
 
 
 @node
@@ -158,19 +146,17 @@ class Branch:
 
 
 @node
-class If:
+class If(Placed):
     branches: tuple[Branch, ...]
     otherwise: tuple[Statement, ...]
-    at: Place
 
 
 @node
-class Label:
+class Label(Placed):
     """A value of a CASE, or a range of values when upper is given."""
 
     lower: Expression
     upper: Expression | None
-    at: Place
 
 
 @node
@@ -180,51 +166,45 @@ class CaseBranch:
 
 
 @node
-class Case:
+class Case(Placed):
     subject: Expression
     branches: tuple[CaseBranch, ...]
     otherwise: tuple[Statement, ...]
-    at: Place
 
 
 @node
-class For:
+class For(Placed):
     control: Expression
     start: Expression
     stop: Expression
     step: Expression | None
     body: tuple[Statement, ...]
-    at: Place
 
 
 @node
-class While:
+class While(Placed):
     condition: Expression
     body: tuple[Statement, ...]
-    at: Place
 
 
 @node
-class Exit:
-    at: Place
+class Exit(Placed): ...
 
 
 @node
-class Return:
-    at: Place
+class Return(Placed): ...
 
 
 Statement = Assign | CallStatement | If | Case | For | While | Exit | Return
 
 
 @node
-class VariableDeclaration:
+class VariableDeclaration(Placed):
     name: str
     type: TypeText
     initial: Expression | None
     pragmas: tuple[str, ...]
     comment: str
-    at: Place
 
 
 @node
@@ -283,14 +263,13 @@ class Routine(_Object, HasSections):
 
 
 @node
-class PropertyDeclaration:
+class PropertyDeclaration(Placed):
     name: str
     access: str
     type: TypeText
     getter: Routine
     pragmas: tuple[str, ...]
     comment: str
-    at: Place
 
 
 @node

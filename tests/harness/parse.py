@@ -7,7 +7,7 @@ from tree_sitter import Node
 
 from . import ast
 from .lexical import refuse_words
-from .parse_expressions import call, expression
+from .parse_expressions import call, expression, part, reader
 from .parse_variables import sections, type_text, variables
 from .pieces import Piece, split
 from .syntax import NO_RESULT, Tree, field, fields, grow, named
@@ -29,13 +29,8 @@ def _statement(tree: Tree, node: Node) -> ast.Statement:
     return reader(tree, node)
 
 
-def _assign(tree: Tree, node: Node) -> ast.Statement:
-    target = expression(tree, field(node, "left"))
-    return ast.Assign(target, expression(tree, field(node, "right")), tree.at(node))
-
-
 def _call(tree: Tree, node: Node) -> ast.Statement:
-    return ast.CallStatement(call(tree, named(node)[0]), tree.at(node))
+    return ast.CallStatement(call(tree, named(node)[0]), at=tree.at(node))
 
 
 def _else_of(tree: Tree, node: Node) -> tuple[ast.Statement, ...]:
@@ -46,20 +41,20 @@ def _else_of(tree: Tree, node: Node) -> tuple[ast.Statement, ...]:
 
 
 def _if(tree: Tree, node: Node) -> ast.Statement:
-    branches = [ast.Branch(expression(tree, field(node, "condition")), body(tree, node, "consequence"))]
+    branches = [ast.Branch(part(tree, node, "condition"), body(tree, node, "consequence"))]
     for clause in named(node):
         if clause.type == "elsif_clause":
-            condition = expression(tree, field(clause, "condition"))
+            condition = part(tree, clause, "condition")
             branches.append(ast.Branch(condition, body(tree, clause)))
-    return ast.If(tuple(branches), _else_of(tree, node), tree.at(node))
+    return ast.If(tuple(branches), _else_of(tree, node), at=tree.at(node))
 
 
 def _label(tree: Tree, node: Node) -> ast.Label:
     value = named(node)[0]
     if value.type == "subrange":
-        lower, upper = expression(tree, field(value, "lower")), expression(tree, field(value, "upper"))
-        return ast.Label(lower, upper, tree.at(node))
-    return ast.Label(expression(tree, value), None, tree.at(node))
+        lower, upper = part(tree, value, "lower"), part(tree, value, "upper")
+        return ast.Label(lower, upper, at=tree.at(node))
+    return ast.Label(expression(tree, value), None, at=tree.at(node))
 
 
 def _case(tree: Tree, node: Node) -> ast.Statement:
@@ -68,35 +63,23 @@ def _case(tree: Tree, node: Node) -> ast.Statement:
         if clause.type == "case_clause":
             labels = tuple(_label(tree, c) for c in named(clause) if c.type == "case_value")
             branches.append(ast.CaseBranch(labels, body(tree, clause)))
-    subject = expression(tree, field(node, "subject"))
-    return ast.Case(subject, tuple(branches), _else_of(tree, node), tree.at(node))
+    subject = part(tree, node, "subject")
+    return ast.Case(subject, tuple(branches), _else_of(tree, node), at=tree.at(node))
 
 
-def _for(tree: Tree, node: Node) -> ast.Statement:
-    step = node.child_by_field_name("step")
-    return ast.For(
-        expression(tree, field(node, "control")),
-        expression(tree, field(node, "start")),
-        expression(tree, field(node, "end")),
-        None if step is None else expression(tree, step),
-        body(tree, node),
-        tree.at(node),
-    )
-
-
-def _while(tree: Tree, node: Node) -> ast.Statement:
-    return ast.While(expression(tree, field(node, "condition")), body(tree, node), tree.at(node))
+def _step(tree: Tree, node: Node, name: str) -> ast.Expression | None:
+    return None if node.child_by_field_name(name) is None else part(tree, node, name)
 
 
 _READERS: dict[str, Callable[[Tree, Node], ast.Statement]] = {
-    "assignment_statement": _assign,
+    "assignment_statement": reader(ast.Assign, left=part, right=part),
     "invocation_statement": _call,
     "if_statement": _if,
     "case_statement": _case,
-    "for_statement": _for,
-    "while_statement": _while,
-    "exit_statement": lambda tree, node: ast.Exit(tree.at(node)),
-    "return_statement": lambda tree, node: ast.Return(tree.at(node)),
+    "for_statement": reader(ast.For, control=part, start=part, end=part, step=_step, body=body),
+    "while_statement": reader(ast.While, condition=part, body=body),
+    "exit_statement": reader(ast.Exit),
+    "return_statement": reader(ast.Return),
 }
 
 
@@ -170,7 +153,7 @@ def _property(tree: Tree, node: Node, piece: Piece) -> ast.PropertyDeclaration:
     accessor = accessors[0]
     head = "GET", name, (), "", tree.at(accessor)
     getter = ast.Routine(*head, access, returns, sections(tree, accessor), body(tree, accessor))
-    return ast.PropertyDeclaration(name, access, returns, getter, piece.pragmas, piece.comment, tree.at(node))
+    return ast.PropertyDeclaration(name, access, returns, getter, piece.pragmas, piece.comment, at=tree.at(node))
 
 
 def _interface(tree: Tree, node: Node, piece: Piece, file: str) -> ast.Interface:

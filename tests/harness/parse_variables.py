@@ -5,7 +5,7 @@ import re
 from tree_sitter import Node
 
 from . import ast
-from .parse_expressions import expression
+from .parse_expressions import expression, part
 from .pieces import comment_text
 from .syntax import Tree, field, fields, named
 
@@ -18,19 +18,16 @@ def type_text(tree: Tree, node: Node) -> ast.TypeText:
     if node.type == "string_type":
         length = node.child_by_field_name("length")
         known = _DEFAULT_STRING_LENGTH if length is None else int(tree.text(length))
-        return ast.StringText(text, known, at)
+        return ast.StringText(text, known, at=at)
     if match := _STRING_RESULT.match(text):
-        return ast.StringText(f"STRING({match.group(1)})", int(match.group(1)), at)
+        return ast.StringText(f"STRING({match.group(1)})", int(match.group(1)), at=at)
     if node.type == "array_type":
-        bounds = tuple(
-            (expression(tree, field(part, "lower")), expression(tree, field(part, "upper")))
-            for part in fields(node, "range")
-        )
-        return ast.ArrayText(text, bounds, type_text(tree, field(node, "element_type")), at)
+        bounds = tuple((part(tree, one, "lower"), part(tree, one, "upper")) for one in fields(node, "range"))
+        return ast.ArrayText(text, bounds, type_text(tree, field(node, "element_type")), at=at)
     if node.type == "pointer_type":
-        return ast.PointerText(text, type_text(tree, field(node, "target")), at)
+        return ast.PointerText(text, type_text(tree, field(node, "target")), at=at)
     if node.type in ("identifier", "qualified_identifier", "elementary_type"):
-        return ast.NamedType(text, at)
+        return ast.NamedType(text, at=at)
     raise tree.refuse(node, f"type {text!r} is not part of the dialect")
 
 
@@ -47,7 +44,7 @@ def _initial(tree: Tree, nodes: list[Node]) -> ast.Expression | None:
             values.extend([expression(tree, value)] * int(tree.text(count_node)))
         else:
             values.append(expression(tree, node))
-    return ast.ArrayValues(tuple(values), tree.at(nodes[0]))
+    return ast.ArrayValues(tuple(values), at=tree.at(nodes[0]))
 
 
 def variables(tree: Tree, parent: Node, kind: str, initial: str) -> tuple[ast.VariableDeclaration, ...]:
@@ -85,7 +82,7 @@ def _declared(
     declared_type = type_text(tree, field(node, "type"))
     value = _initial(tree, fields(node, initial))
     return [
-        ast.VariableDeclaration(tree.text(name), declared_type, value, pragmas, comment, tree.at(name))
+        ast.VariableDeclaration(tree.text(name), declared_type, value, pragmas, comment, at=tree.at(name))
         for name in names
     ]
 

@@ -231,29 +231,8 @@ def query(source: Any, target: Any, name: str) -> bool:
 ENVIRONMENT: dict[str, Any] = {
     item.__name__: item
     for item in (
-        Cell,
-        FieldCell,
-        ElementCell,
-        StructValue,
-        peek,
-        poke,
-        address,
-        assign_elements,
-        copy_elements,
-        not_finite,
-        overflow,
-        unbounded,
-        outside,
-        quotient,
-        remainder,
-        rounded,
-        truncated,
-        left,
-        limited,
-        minimum,
-        maximum,
-        selected,
-        referred,
-        query,
+        Cell, FieldCell, ElementCell, StructValue, peek, poke, address, assign_elements, copy_elements, not_finite,
+        overflow, unbounded, outside, quotient, remainder, rounded, truncated, left, limited, minimum, maximum,
+        selected, referred, query,
     )
-} | {"math": math}
+} | {"math": math}  # fmt: skip

@@ -98,7 +98,6 @@ def test_both_sides_of_a_logic_operator_are_evaluated(side: str) -> None:
 
 
 def test_a_fault_inside_a_called_function_names_the_inner_line() -> None:
-    """A fault inside a called function is reported with the line of that function."""
     text = """FUNCTION Inner : LREAL
 VAR_INPUT x : LREAL; END_VAR
 Inner := 1.0 / x;

@@ -122,7 +122,6 @@ BODIES = {
 
 @pytest.mark.parametrize("name", BODIES)
 def test_a_body_that_breaks_a_rule_is_refused(name: str) -> None:
-    """A statement that breaks a rule of the language is refused with the message for that rule."""
     body, message = BODIES[name]
     silent = "FUNCTION Silent\nVAR\n q : BOOL;\nEND_VAR\nq := TRUE;\nEND_FUNCTION\n"
     assert message in refused(CALLEE + silent + FUNCTION.format(variables=VARIABLES, body=body))
@@ -201,7 +200,6 @@ VARIABLES_REFUSED = {
 
 @pytest.mark.parametrize("name", VARIABLES_REFUSED)
 def test_a_declaration_that_breaks_a_rule_is_refused(name: str) -> None:
-    """A declaration of a variable that breaks a rule is refused with the message for that rule."""
     variables, message = VARIABLES_REFUSED[name]
     assert message in refused(FUNCTION.format(variables=variables, body=""))
 
@@ -248,7 +246,6 @@ MEMBERS = {
 
 @pytest.mark.parametrize("name", MEMBERS)
 def test_a_member_that_breaks_a_rule_is_refused(name: str) -> None:
-    """A method or a property that breaks a rule is refused with the message for that rule."""
     members, message = MEMBERS[name]
     assert message in refused(BLOCK.format(members=members))
 
@@ -287,7 +284,6 @@ INSTANCES = {
 
 @pytest.mark.parametrize("name", INSTANCES)
 def test_a_use_of_an_instance_that_breaks_a_rule_is_refused(name: str) -> None:
-    """A wrong use of an instance of a function block is refused with the message for that rule."""
     body, message = INSTANCES[name]
     assert message in refused(INNER + USER.format(body=body))
 
@@ -309,13 +305,11 @@ OBJECTS = {
 
 @pytest.mark.parametrize("name", OBJECTS)
 def test_an_object_that_breaks_a_rule_is_refused(name: str) -> None:
-    """An object that breaks a rule is refused with the message for that rule."""
     text, message = OBJECTS[name]
     assert message in refused(text)
 
 
 def test_the_message_names_file_and_line() -> None:
-    """A refusal names the file and the line of the mistake."""
     text = FUNCTION.format(variables="x : LREAL;", body="\n\nx := y;")
     assert refused(text) == "probe.st:8: undeclared name y"
 

@@ -133,7 +133,6 @@ def test_return_leaves_at_once() -> None:
 
 
 def test_structures_are_copied_by_assignment() -> None:
-    """The assignment of a structure copies its members."""
     text = """u.dX := 1.0; v := u; u.dX := 2.0; Probe := v.dX;
 f.vT := v; v.dX := 5.0; Probe := Probe + f.vT.dX;"""
     assert function(text, variables="u : SMC_Vector3D; v : SMC_Vector3D; f : SMC_Frame;")() == 2.0
@@ -298,7 +297,6 @@ def test_declarations_are_kept_for_tests_of_signatures() -> None:
 
 
 def test_a_method_may_change_its_own_copy_of_an_input() -> None:
-    """A method can assign to its copy of an input."""
     assert function("x := x + 1.0; Probe := x;", inputs="x : LREAL;")(1.0) == 2.0
 
 

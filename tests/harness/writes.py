@@ -14,7 +14,7 @@ WRITERS = ("Initialize", "AxisSettings")
 REFERENCE, ITS_WRITERS = "lastAxes", ("Direct", "Inverse")
 """What a user transformation of PacDrive keeps: the robot calls it in one task."""
 READERS = ("ReadInputs", "Check", "ReadLimits")
-"""What Initialize alone calls, and what that calls: see `tests/text/contract/test_writes.py`."""
+"""What Initialize alone calls, and what that calls: see `tests/text/contract/test_interfaces.py`."""
 
 
 def root(node: ast.Expression, facts: Facts) -> types.Variable | None:

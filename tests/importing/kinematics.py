@@ -15,6 +15,7 @@ from derive.geometry.frames import Motion
 from derive.importing.importing import Imported, Options, import_robot
 from derive.importing.robot import UnreadableRobot
 from derive.ir.constants import DEGREE
+from tests.orthonormal import rodrigues
 
 Array = NDArray[np.float64]
 Pose = Callable[[Mapping[str, float]], Array]
@@ -80,11 +81,7 @@ def elementary(motion: Motion, axis: int, amount: float) -> Array:
     if motion is Motion.SHIFT:
         pose[axis, 3] = amount
         return pose
-    amount = amount * np.pi if motion is Motion.FLIP else amount
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    pose[i, i] = pose[j, j] = np.cos(amount)
-    pose[j, i] = np.sin(amount)
-    pose[i, j] = -pose[j, i]
+    pose[:3, :3] = rodrigues(np.eye(3)[axis], amount * np.pi if motion is Motion.FLIP else amount)
     return pose
 
 

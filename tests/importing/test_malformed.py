@@ -1,17 +1,21 @@
-"""Files that are broken in any way: a sentence about the file, or a description that Python reads; never a crash."""
+"""Files that are broken or odd in any way: a sentence about the file, or the description of what it says; no crash."""
 
 import ast
 import random
 import re
+import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from derive.importing.importing import import_robot
 from derive.importing.robot import UnreadableRobot
-from tests.importing.kinematics import described, imported_text, refused
+from tests.importing.kinematics import UNSNAPPED, assert_is, by_yourdfpy, described, imported, imported_text, refused
 from tests.importing.robots import joint, urdf
+from tests.importing.test_mjcf import by_mujoco
+from tests.machines.made import built_of
 
 HEAD = 'convention = "standard"\nangles = "{}"\nlengths = "mm"\n'
 CELLS = "# convention: standard\n# angles: radians\n# lengths: m\nname,type,theta,d,a,alpha,lower,upper,coupling\n"
@@ -188,3 +192,105 @@ def test_any_change_of_a_file_is_read_or_refused(file: str, tmp_path: Path) -> N
         assert found.bounds.position < 1e9 and found.text.replace("\n", "").isprintable()
         read += 1
     assert read > 5, "some changes do no harm"
+
+
+DIRECTIONS = (
+    "1 0 0", "-1 0 0", "0 -1 0", "0 0 1", "0 0 -2", "0 0.70710678 0.70710678", "-0.5 0.5 0", "0.2 0.3 0.9",
+    "1e-9 0 1",
+)  # fmt: skip
+TURNS = ("0", "0", "0", "1.5708", "3.14159", "-1.570796325", "3.141592653589793", "0.7853982", "0.3", "-2.5", "1e-7")
+SHIFTS = ("0", "0", "0", "0.1", "-0.25", "0.3333333", "1e-6", "0.00043624", "0.5")
+KINDS = ("revolute", "revolute", "revolute", "continuous", "prismatic", "fixed")
+SEEDS = 10
+
+
+def odd(seed: int) -> str:
+    """A chain of eight or nine moving joints and some fixed ones; every third robot has joints that follow others."""
+    rng = np.random.default_rng(seed)
+    kinds = ["revolute"] * 6 + [str(rng.choice(KINDS)) for _ in range(6)]
+    rng.shuffle(kinds)
+    joints, moving = [], []
+    for k, kind in enumerate(kinds):
+        xyz, rpy = (" ".join(map(str, rng.choice(values, 3))) for values in (SHIFTS, TURNS))
+        mimic = ""
+        if kind != "fixed" and moving and seed % 3 == 0 and rng.random() < 0.3:
+            leader = str(rng.choice(moving))
+            mimic = f'<mimic joint="{leader}" multiplier="{rng.choice([-1, 0.5, 3])}" offset="{rng.choice([0, 0.2])}"/>'
+        elif kind != "fixed":
+            moving.append(f"odd_joint-{k}")
+        limits = None if kind == "continuous" else (-2.5, float(rng.choice([-0.5, 1.0])))
+        axis = str(
+            rng.choice(DIRECTIONS[:4] if kind == "prismatic" else DIRECTIONS)
+        )  # the other reader takes the length of a slide's
+        joints.append(joint(f"odd_joint-{k}", kind, xyz, rpy, axis, limits, mimic))
+    return urdf("odd robot", *joints)
+
+
+def shuffled(text: str, seed: int) -> str:
+    """The same file with its joints in another order."""
+    parts = re.findall(r"<joint name.*?</joint>\n", text, re.S)
+    order = np.random.default_rng(seed).permutation(len(parts))
+    head = text.split("<joint name", 1)[0]
+    return head + "".join(parts[k] for k in order) + "</robot>\n"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_an_odd_file_is_what_it_says(seed: int, tmp_path: Path) -> None:
+    path = tmp_path / "odd.urdf"
+    text = shuffled(odd(seed), seed)
+    tip = f"link{text.count('<joint name')}"
+    for snap in (0.0, 1e-4):
+        found = imported_text(path, text, "link0", tip, snap=snap)
+        assert_is(found, tmp_path, by_yourdfpy(path, "link0", tip), 1e-8, 1e-11)
+        assert snap > 0.0 or found.bounds.rotation <= UNSNAPPED
+        assert sum(len(name) > 3 for name in found.axes) == 0
+
+
+@pytest.mark.slow
+def test_a_small_arm_far_from_its_base(tmp_path: Path) -> None:
+    path = tmp_path / "far.urdf"
+    arm = [joint("a", "revolute", "40 0 3"), joint("b", "revolute", "0.1 0 0"), joint("tip", "fixed", "0.1 0 0")]
+    found = imported_text(path, urdf("far", *arm))
+    assert_is(found, tmp_path, by_yourdfpy(path, "link0", "link3"), 1e-8, 1e-11)
+
+
+FILES = Path(__file__).parent / "files"
+SOLUTIONS = {
+    "namespace_and_tabs.urdf": 4, "axis_left_out.urdf": 2, "same_names.urdf": 2, "mixed_decimals.urdf": 8,
+    "inclined_wrist.urdf": 8, "degrees_and_classes.xml": 4, "short_quaternions.xml": 12, "frames.xml": 2,
+    "includes.xml": 2, "three_slides.xml": 2, "directions.xml": 4,
+}  # fmt: skip
+TIPS = {"degrees_and_classes.xml": "tcp", "frames.xml": "t", "short_quaternions.xml": "tip"}
+SLOW = ("mixed_decimals.urdf", "inclined_wrist.urdf", "short_quaternions.xml")
+FOR_THE_OTHER_READER: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "namespace_and_tabs.urdf": ((' xmlns="http://www.ros.org"', ""),),
+    "degrees_and_classes.xml": (("<joint/>", '<joint name="l2.0"/>'), ('class="B" ', 'class="B" name="l3.0" ')),
+}
+"""What the other reader does not know: it reads no namespace, and ours names a joint without a name."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SOLUTIONS)
+@pytest.mark.parametrize("snap", [0.0, 1e-6])
+def test_it_is_what_the_other_reader_says(name: str, snap: float, tmp_path: Path) -> None:
+    found = imported(FILES / name, tip=TIPS.get(name), snap=snap)
+    shutil.copytree(FILES, tmp_path / "files")
+    plain = tmp_path / "files" / name
+    text = plain.read_text(encoding="utf-8")
+    for ours, theirs in FOR_THE_OTHER_READER.get(name, ()):
+        assert ours in text
+        text = text.replace(ours, theirs)
+    plain.write_text(text, encoding="utf-8")
+    reader = by_yourdfpy if plain.suffix == ".urdf" else by_mujoco
+    pose = reader(plain, found.robot.base, found.robot.tip)
+    assert_is(found, tmp_path, pose)
+    assert snap > 0.0 or found.bounds.rotation <= UNSNAPPED
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in SLOW else n for n in SOLUTIONS])
+def test_it_is_derived(name: str, tmp_path: Path) -> None:
+    evidence = built_of(described(imported(FILES / name, tip=TIPS.get(name)), tmp_path)).evidence
+    assert evidence is not None and evidence.inverted is not None
+    assert evidence.inverted.solutions == SOLUTIONS[name]

@@ -61,11 +61,6 @@ def _of_axes(question: Answer) -> list[Any]:
     return [question[key] for key in ("axes", "start") if key in question]
 
 
-def _start_of(question: Answer) -> Answer:
-    """The start of a question that has one, as a keyword."""
-    return {"start": question["start"]} if "start" in question else {}
-
-
 def _frame(frame: Sequence[Any]) -> Answer:
     return {"position": frame[0], "rotation": frame[1]}
 
@@ -153,7 +148,8 @@ class Comparison:
     def _motion(self, question: Answer, call: str, given: list[list[float]], answer: Answer) -> None:
         """Velocities and accelerations of the axes: the margin divides the error of a pose for each derivative."""
         words = {"axisVelocities": "axis_velocities", "axisAccelerations": "axis_accelerations"}
-        expected = self._asked(words[call], question["axes"], *given, **_start_of(question))
+        start = {"start": question["start"]} if "start" in question else {}
+        expected = self._asked(words[call], question["axes"], *given, **start)
         is_refused = isinstance(expected, softkin.KinematicsError)
         if is_refused and expected.status is not softkin.Status.IMPOSSIBLE:
             self._same_status(call, expected, answer)

@@ -1,4 +1,4 @@
-"""What is written: its width, its imports, what it says of a machine, and a refusal in words."""
+"""What is written: its width, its imports, what it says of a machine; the program of docs/JAVASCRIPT.md."""
 
 import json
 import re
@@ -115,3 +115,20 @@ def test_amounts_are_spelled_as_in_python(unit: str, turn: int) -> None:
     """
     found = run(module_of("Kin_CAxis").parent / "softkin" / "softkin.js", script)
     assert found == expected
+
+
+PAGE = Path(__file__).parents[2] / "docs/JAVASCRIPT.md"
+
+
+def test_the_program_of_the_guide() -> None:
+    """Each line gives what stands behind it."""
+    (shown,) = re.findall(r"```js\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    head, _, body = shown.partition("\n\n")
+    assert head == 'import { create, description } from "./build/javascript/scara4_zccoupled_type1.js";'
+    lines = [re.sub(r"^machine\.(.*?); // .*$", r"found.push(machine.\1);", line) for line in body.splitlines()]
+    script = "\n".join(["const { create, description } = module; const found = [];", *lines, "return found;"])
+    axes, slots, refused = run(module_of("Kin_Scara4_ZCcoupled_Type1"), script)
+    assert axes == pytest.approx([30.0, 40.0, -50.0, 60.0])
+    assert [slot["status"] for slot in slots] == [0, 0]
+    assert refused["missing"] == pytest.approx(350.0)
+    assert refused["status"] == 3 and refused["reason"] == "A2: out of reach"

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -17,6 +15,7 @@ from derive.emit.around_c.package import klipper
 from derive.emit.c.package import module_name
 from prove.klipper.path import Way, way_of
 from tests.mechanisms import kinematics_of, named
+from tests.outside import output_of, temporary, written
 
 STUB = Path(__file__).parent / "stub"
 _Three = ctypes.c_double * 3
@@ -29,8 +28,8 @@ class Refused(Exception):
 @cache
 def solver() -> ctypes.CDLL:
     """The compiled stand-in."""
-    library = Path(mkdtemp(prefix="klipper-")) / "solver.so"
-    subprocess.run(["gcc", "-shared", "-fPIC", "-I", STUB, "-o", library, STUB / "solver.c"], check=True)
+    library = temporary("klipper") / "solver.so"
+    output_of(["gcc", "-shared", "-fPIC", "-I", STUB, "-o", library, STUB / "solver.c"])
     found = ctypes.CDLL(str(library))
     address, real = ctypes.c_void_p, ctypes.c_double
     found.ask.restype, found.ask.argtypes = real, [address, address, address, real, real, real]
@@ -118,12 +117,10 @@ TOOLHEAD = SimpleNamespace(get_trapq=lambda: "queue", Coord=tuple)
 @cache
 def loaded(name: str) -> ModuleType:
     """The module of a machine, imported as Klipper does."""
-    folder = Path(mkdtemp(prefix="klipper-"))
+    folder = temporary("klipper")
     part = klipper.part(kinematics_of(named(name)))
     assert part is not None
-    for path, text in klipper.files([part]).items():
-        (folder / "kinematics" / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / "kinematics" / path).write_text(text, encoding="utf-8")
+    written(klipper.files([part]), folder / "kinematics")
     chelper = ModuleType("chelper")
     chelper.__file__ = str(STUB / "__init__.py")
     chelper.get_ffi = lambda: (SimpleNamespace(cast=lambda kind, address: address), None)  # type: ignore[attr-defined]

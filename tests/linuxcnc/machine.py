@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from math import atan2, degrees, radians
+from math import atan2, degrees
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from tests.corpus.dimensions import DIMENSIONS
 from tests.corpus.recording import read
 from tests.linuxcnc.module import Module, Pose, module_of
 from tests.mechanisms import kinematics_of, named
+from tests.orthonormal import about
 
 NAMES = [name for name in DIMENSIONS if name != "Kin_Tool"]
 REGULAR, MOST_POSES = 12, 40
@@ -53,16 +54,6 @@ class Machine:
             turned = about(2, c) if "C" in self.words.letters else np.eye(3)
             rotation = turned @ about(0, 180.0) if is_down else turned
         return softkin.Frame(tuple(position), np.asarray(rotation).tolist())
-
-
-def about(axis: int, angle: float) -> Array:
-    """The rotation about a coordinate axis, degrees."""
-    turned = np.eye(3)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    turned[i, i] = turned[j, j] = np.cos(radians(angle))
-    turned[j, i] = np.sin(radians(angle))
-    turned[i, j] = -turned[j, i]
-    return turned
 
 
 def heading(rotation: Any) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import shutil
-import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -16,6 +15,7 @@ from typing import Any
 from derive.emit.language import Part
 from derive.emit.linuxcnc import package
 from tests.mechanisms import kinematics_of, named
+from tests.outside import output_of, temporary, written
 
 COMPILER = os.environ.get("CC", "gcc")
 HERE = Path(__file__).parent
@@ -45,10 +45,7 @@ def part_of(name: str) -> Part:
 
 def compiled(part: Part, stub: str, standard: str = "gnu11", *options: str) -> Path:
     """The library of a module, with a new file for each call: a library that is loaded keeps its state."""
-    folder = Path(mkdtemp(prefix="linuxcnc-"))
-    _FOLDERS.append(folder)
-    ((path, text),) = part["files"].items()
-    (folder / path).write_text(text, encoding="utf-8")
+    folder, (path,) = written(part["files"], temporary("linuxcnc")), part["files"]
     run(folder, f"-std={standard}", *STRICT, *includes(stub), "-fPIC", "-shared", *(options or ("-O0",)), path,
         str(pins(stub)), "-lm", "-o", "module.so")  # fmt: skip
     return folder / "module.so"
@@ -62,25 +59,14 @@ def includes(stub: str) -> tuple[str, str]:
 @cache
 def pins(stub: str) -> Path:
     """The stand-in for the HAL, compiled."""
-    folder = Path(mkdtemp(prefix="linuxcnc-"))
-    _FOLDERS.append(folder)
+    folder = temporary("linuxcnc")
     run(folder, "-std=gnu11", *STRICT, *includes(stub), "-fPIC", "-c", str(HERE / "stub" / "pins.c"))
     return folder / "pins.o"
 
 
 def run(folder: Path, *options: str) -> None:
     """Compile in a folder; every warning is an error."""
-    done = subprocess.run([COMPILER, *options], cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr[:3000]
-
-
-_FOLDERS: list[Path] = []
-
-
-def remove() -> None:
-    """Remove all folders."""
-    while _FOLDERS:
-        shutil.rmtree(_FOLDERS.pop(), ignore_errors=True)
+    output_of([COMPILER, *options], cwd=folder)
 
 
 @dataclass

@@ -13,9 +13,10 @@ import pytest
 from derive.description.mechanism import Turning
 from derive.emit.c.description import inputs
 from derive.emit.linuxcnc import package
-from tests.linuxcnc.machine import NAMES, Machine, about, differs, machine_of, recorded
+from tests.linuxcnc.machine import NAMES, Machine, differs, machine_of, recorded
 from tests.linuxcnc.module import LETTERS, STUBS, Module, Pose, module_of
 from tests.mechanisms import kinematics_of, named
+from tests.orthonormal import about
 
 pytestmark = pytest.mark.broad
 

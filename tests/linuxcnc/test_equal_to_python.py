@@ -9,8 +9,9 @@ import pytest
 import softkin
 
 from derive.emit.linuxcnc.words import Orientation
-from tests.linuxcnc.machine import NAMES, Machine, about, answered, differs, heading, machine_of, recorded
+from tests.linuxcnc.machine import NAMES, Machine, answered, differs, heading, machine_of, recorded
 from tests.linuxcnc.module import LETTERS, Pose
+from tests.orthonormal import about
 
 pytestmark = pytest.mark.broad
 

@@ -6,16 +6,22 @@ import numpy as np
 from numpy.typing import NDArray
 from softkin import Status
 
+from tests.catalogue.loop_machines import LoopClosure
 from tests.machines.made import Array, Made
+from tests.random_axes import random_axes
 
 MOST = 300
 """Rows of a grid, drawn where it has more."""
-_CORNERS = 240
+_CORNERS, _REGULAR = 240, 0.05
 
 
 def grid(machine: Made) -> Array:
-    """Joints at multiples of a quarter turn and of a length, where every singular pose is, and anywhere."""
+    """Joints at multiples of a quarter turn and of a length, where every singular pose is, and anywhere; of a loop,
+    anywhere on more than one turn.
+    """
     rng = np.random.default_rng(4)
+    if machine.mechanism.rods:
+        return random_axes(machine.robot, MOST, rng, 300.0, machine.reach, machine.closure.offsets)
     angles, slides = (-180.0, -90.0, 0.0, 90.0, 180.0), (-0.5, 0.0, 0.3)
     rows = np.array(list(product(*[angles if a else slides for a in machine.closure.angles])))
     if len(rows) > MOST:
@@ -45,13 +51,15 @@ def every_pose_is_met(machine: Made, axes: Array, references: Array, within: flo
     slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
     found = statuses == Status.OK
     assert len(found) and found.any(axis=1).all()
-    for slot in range(slots.shape[1]):
-        rows = found[:, slot]
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= within
+    assert machine.worst(slots, statuses, positions, rotations) <= within
 
 
 def is_own(machine: Made, axes: Array) -> NDArray[np.bool_]:
-    """Whether every positive quantity of the machine is."""
+    """Whether every positive quantity of the machine is; of a loop, whether it closes away from singular poses."""
+    if isinstance(machine.closure, LoopClosure):
+        own = np.isfinite(machine.closure.poses(axes)[0]).all(axis=1)
+        own[own] = [min(np.abs(margins(machine, row))) > _REGULAR for row in axes[own].tolist()]
+        return np.asarray(own)
     return np.all(machine.closure.positive(machine.closure.joints(axes)) > 1e-6, axis=1)
 
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any
 
 import softkin
@@ -18,6 +17,7 @@ from tests.importing.kinematics import described, imported
 from tests.importing.robots import joint, urdf
 from tests.machines.made import imported_class
 from tests.mechanisms import named
+from tests.outside import temporary
 
 BESIDE = 1e-3
 """How far inside a limit, and beyond it, axes are asked for: degrees, lengths."""
@@ -85,7 +85,7 @@ def _made(mechanism: Mechanism, given: dict[str, Any], base: tuple[float, ...], 
 @cache
 def limited_machine(kind: str) -> Limited:
     """One of the three kinds, derived, measured and written."""
-    folder = Path(mkdtemp(prefix="limited-"))
+    folder = temporary("limited")
     if kind == GIVEN:
         lengths: dict[str, Any] = {"link_length_1": 325.0, "link_length_2": 225.0, "pitch_zc": 20.0}
         ends = {"a1": (-100.0, 90.0), "a2": (20.0, 150.0), "a3": (-50.0, 60.0), "a4": (-300.0, 250.0)}

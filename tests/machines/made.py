@@ -4,8 +4,6 @@ import ast
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from pathlib import Path
-from tempfile import mkdtemp
 
 import numpy as np
 import softkin
@@ -23,6 +21,7 @@ from tests.machines.collection import MACHINES
 from tests.machines.free_machines import FREED
 from tests.machines.parallel_machines import PARALLEL
 from tests.machines.subset_machines import SUBSETS
+from tests.outside import temporary, written
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 
@@ -65,6 +64,14 @@ class Made:
         residual[:, : len(self.mechanism.task.position)] /= (self.reach + slides)[:, None]
         return np.asarray(residual.max(axis=1))
 
+    def worst(self, slots: Array, statuses: Array, positions: Array, rotations: Array) -> float:
+        """The largest error of all answers of a batch, which are in the assembly mode of the machine."""
+        rows, columns = np.nonzero(statuses == softkin.Status.OK)
+        answers = slots[rows, columns]
+        if isinstance(self.closure, LoopClosure):
+            assert (self.closure.side(self.closure.joints(answers), positions[rows]) > 0).all()
+        return float(self.error(answers, positions[rows], rotations[rows]).max(initial=0.0))
+
 
 @cache
 def made(name: str) -> Made:
@@ -99,13 +106,10 @@ def imported_class(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism
 
     They are not laid out, which changes no statement, and takes a process for every machine.
     """
-    folder = Path(mkdtemp(prefix="machine-"))
-    for path, text in built.parts["python"]["files"].items():
-        if path.startswith("softkin/"):
-            ast.parse(text, path)
-            target = folder / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text, encoding="utf-8")
+    texts = {path: text for path, text in built.parts["python"]["files"].items() if path.startswith("softkin/")}
+    for path, text in texts.items():
+        ast.parse(text, path)
+    folder = written(texts, temporary("machine"))
     for package in ("softkin", "softkin._array_programs", "softkin._unrolled"):
         paths = import_module(package).__path__
         paths.append(str(folder / package.replace(".", "/")))

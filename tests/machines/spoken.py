@@ -15,6 +15,7 @@ from derive.emit.c import package as in_c
 from derive.emit.javascript import package as in_javascript
 from tests.c.machine import ask as ask_c
 from tests.c.programs import compiled
+from tests.catalogue.refusals import status_of
 from tests.javascript.modules import written
 from tests.javascript.node import ask as ask_javascript
 from tests.machines.made import Made, made
@@ -61,7 +62,7 @@ def spoken(name: str) -> Spoken:
     robot, count = machine.robot, len(machine.robot.AXES)
     spread = np.random.default_rng(5).uniform(-1.0, 1.0, (60, count)) * np.where(machine.closure.angles, 90.0, 0.3)
     rows = map(tuple, machine.axes(spread).tolist())
-    poses = [(axes, robot.forward(axes)[0]) for axes in rows if _is_possible(robot, axes)]
+    poses = [(axes, robot.forward(axes)[0]) for axes in rows if status_of(robot.forward, axes) is softkin.Status.OK]
     assert len(poses) > 10
     calls = [["inverseAll", {"position": f.position, "rotation": f.rotation}, axes] for axes, f in poses]
     return Spoken(machine, poses, calls)
@@ -73,14 +74,6 @@ def asked_in(language: str, mechanism: Mechanism, asked: Sequence[Mapping[str, A
     if language == "c":
         return list(ask_c(compiled(in_c.part(kinematics)), list(asked)))
     return list(ask_javascript(written(in_javascript.part(kinematics)), list(asked))["answers"])
-
-
-def _is_possible(robot: softkin.Mechanism, axes: tuple[float, ...]) -> bool:
-    try:
-        robot.forward(axes)
-    except softkin.KinematicsError:
-        return False
-    return True
 
 
 def confirm_natural_names(name: str, forward: Forward, words: Mapping[str, str]) -> None:

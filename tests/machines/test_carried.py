@@ -7,25 +7,22 @@ from itertools import product
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from softkin import KinematicsError, Status
+from softkin import Status
 
 from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, Y
 from derive.description.validate import validate
 from derive.frames import Rz
 from derive.kinematics.build import build
 from tests.catalogue.loop_machines import LoopClosure
-from tests.machines.both import forward_in_both, inverse_in_both
 from tests.machines.carried import A1, A2, CARRIED, TIP, C, five_bar
+from tests.machines.grid import grid, is_own
 from tests.machines.made import Array, Made, made
-from tests.random_axes import random_axes
 from tests.text.controller import OK
 
 pytestmark = pytest.mark.slow
 
 EVERY = pytest.mark.parametrize("name", CARRIED)
-SOLUTIONS = 4
-"""The most in one assembly mode, as a search of the closure from many starts finds them."""
-DRAWN, REGULAR, FEW = 300, 0.05, 8
+FEW = 8
 _CLOSED, _SAME = 1e-9, 1e-7
 
 
@@ -34,22 +31,11 @@ def closure_of(machine: Made) -> LoopClosure:
     return machine.closure
 
 
-def drawn(machine: Made) -> Array:
-    """Axis values of more than one turn, and of the machine's size."""
-    rng, about = np.random.default_rng(5), machine.closure.offsets
-    return random_axes(machine.robot, DRAWN, rng, 300.0, machine.reach, about)
-
-
 @cache
 def regular(name: str) -> Array:
-    """Those at which the loop closes, as the closure says, away from singular poses."""
-    machine = made(name)
-    axes = drawn(machine)
-    axes = axes[np.isfinite(closure_of(machine).poses(axes)[0]).all(axis=1)]
-    margins = [min(map(abs, machine.robot.singularity(row).margins.values())) for row in axes]
-    found = axes[np.array(margins) > REGULAR]
-    assert len(found) > 20
-    return found
+    """Axis values at which the loop closes, as the closure says, away from singular poses."""
+    axes = grid(made(name))
+    return axes[is_own(made(name), axes)]
 
 
 def counted(machine: Made, axes: Array) -> int:
@@ -75,18 +61,10 @@ def counted(machine: Made, axes: Array) -> int:
 
 
 @EVERY
-def test_the_number_of_solutions(name: str) -> None:
-    """The witness has compared every slot with the closure, and Jacobian, margins and the point off the flange."""
-    evidence = made(name).built.evidence
-    assert evidence is not None and evidence.inverted is not None
-    assert (evidence.poses, evidence.inverted.solutions) == (144, SOLUTIONS)
-
-
-@EVERY
 def test_forward_is_where_the_loop_closes(name: str) -> None:
     """Newton's method on the closure from far away finds the same pose; where it finds none, forward refuses."""
     machine = made(name)
-    axes = drawn(machine)
+    axes = grid(machine)
     expected, turned = closure_of(machine).poses(axes)
     positions, rotations, _, statuses = machine.robot.forward_batch(axes)
     closed = np.isfinite(expected).all(axis=1)
@@ -99,27 +77,9 @@ def test_forward_is_where_the_loop_closes(name: str) -> None:
 
 
 @EVERY
-def test_every_slot_closes_and_one_leads_back(name: str) -> None:
-    machine = made(name)
-    axes = regular(name)
-    positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
-    slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
-    assert (statuses == Status.OK).any(axis=1).all()
-    for slot in range(slots.shape[1]):
-        rows = statuses[:, slot] == Status.OK
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
-        joints = machine.closure.joints(slots[rows, slot])
-        assert (closure_of(machine).side(joints, positions[rows]) > 0).all()
-    back, statuses = machine.robot.inverse_batch(positions, rotations, configurations, axes)
-    assert (statuses == Status.OK).all()
-    assert_allclose(back, axes, rtol=0.0, atol=1e-7)
-
-
-@EVERY
 def test_the_slots_hold_what_the_equations_of_the_legs_have(name: str) -> None:
     machine = made(name)
-    robot = type(machine.robot)(**{**machine.robot.parameters, "min_type2_margin": 0.0})
-    axes = regular(name)[:20]
+    robot, axes = machine.robot.changed(min_type2_margin=0.0), regular(name)[:20]
     positions, rotations, _, _ = robot.forward_batch(axes)
     statuses = robot.inverse_all_batch(positions, rotations, axes)[1]
     assert [counted(machine, row) for row in axes] == (statuses == Status.OK).sum(axis=1).tolist()
@@ -149,28 +109,13 @@ def test_the_jacobian_is_that_of_the_closure(name: str) -> None:
         assert np.abs(found - own).max() <= 1e-9 * np.abs(own).max()
 
 
-@EVERY
-def test_both_languages_say_the_same(name: str) -> None:
-    machine = made(name)
-    controller, robot = machine.controller(), machine.robot
-    offset = np.array([0.04, -0.03, 0.0]) * machine.reach
-    for axes in [*regular(name)[:FEW].tolist(), *drawn(machine)[:FEW].tolist()]:
-        there = forward_in_both(controller, robot, axes, machine.reach)
-        if there is None:
-            continue
-        frame, configuration = there
-        inverse_in_both(controller, robot, frame, axes)
-        if machine.mechanism.offset_interface:
-            point = tuple(np.add(frame.position, np.array(frame.rotation) @ offset))
-            status, found = controller.inverse_offset(point, tuple(offset), configuration, axes)
-            expected = robot.inverse_offset(point, tuple(offset), configuration, axes) if status == OK else None
-            assert expected is None or np.abs(np.subtract(found[: len(axes)], expected)).max() <= _SAME
-
-
 @pytest.mark.parametrize("name", [n for n, m in CARRIED.items() if m.offset_interface])
 def test_a_point_off_the_flange_holds_the_tool(name: str) -> None:
-    """With the reference at the axes the point leads back to them: C stays, and the loop shifts the flange."""
+    """With the reference at the axes the point leads back to them, in both languages: C stays, and the loop shifts the
+    flange.
+    """
     machine = made(name)
+    controller = machine.controller()
     offset = np.array([0.04, -0.03, 0.0]) * machine.reach
     for axes in regular(name)[:FEW]:
         frame, _ = machine.robot.forward(axes)
@@ -178,6 +123,8 @@ def test_a_point_off_the_flange_holds_the_tool(name: str) -> None:
         configuration = machine.robot.configuration_offset(axes, tuple(offset))
         found = machine.robot.inverse_offset(point, tuple(offset), configuration, axes)
         assert_allclose(found, axes, rtol=0.0, atol=1e-7)
+        status, same = controller.inverse_offset(point, tuple(offset), configuration, axes.tolist())
+        assert status == OK and np.abs(np.subtract(same[: len(axes)], found)).max() <= _SAME
         turned = axes + np.where([j.symbol == C.symbol for j in machine.mechanism.joints], 0.3, 0.0)
         if "climbs" not in name:  # there the quill follows C
             code = (0,) * len(configuration)
@@ -189,29 +136,10 @@ def test_a_point_off_the_flange_holds_the_tool(name: str) -> None:
 
 
 @EVERY
-@pytest.mark.parametrize("garbage", [float("nan"), float("inf"), -float("inf"), 1e300])
-def test_garbage_ends_in_a_status(name: str, garbage: float) -> None:
-    machine = made(name)
-    count, controller = len(machine.mechanism.joints), machine.controller()
-    with pytest.raises(KinematicsError):
-        machine.robot.forward([garbage] * count)
-    assert controller.forward([garbage] * count)[0] != OK
-    frame, _ = machine.robot.forward(regular(name)[0])
-    for position, rotation in (
-        ((garbage, 0.0, 0.0), frame.rotation),
-        (frame.position, [[garbage, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
-        ((50.0 * machine.reach, 0.0, 0.0), frame.rotation),
-    ):
-        with pytest.raises(KinematicsError):
-            machine.robot.inverse((position, rotation), None, [0.0] * count)
-        assert controller.inverse(position, rotation, (), [0.0] * count)[0] != OK
-
-
-@EVERY
 def test_a_stretched_leg_is_an_answer_and_rods_in_line_are_none(name: str) -> None:
     """Toward a type 1 singularity the inverse answers up to the end; beyond it every slot refuses."""
     machine = made(name)
-    robot = type(machine.robot)(**{**machine.robot.parameters, "min_type2_margin": 0.0})
+    robot, controller = machine.robot.changed(min_type2_margin=0.0), machine.controller()
     ends = 0
     for axes in regular(name)[:FEW]:
         frame, configuration = robot.forward(axes)
@@ -221,6 +149,7 @@ def test_a_stretched_leg_is_an_answer_and_rods_in_line_are_none(name: str) -> No
             place = np.add(frame.position, (0.3 * middle, middle, 0.0))
             answered = robot.inverse_batch([place], [frame.rotation], configuration, axes)[1][0] == Status.OK
             low, high = (middle, high) if answered else (low, middle)
+        assert controller.inverse((50.0 * machine.reach, 0.0, 0.0), frame.rotation, configuration, axes)[0] != OK
         last = np.add(frame.position, (0.3 * low, low, 0.0))
         found, statuses = robot.inverse_batch([last], [frame.rotation], configuration, axes)
         assert statuses[0] == Status.OK

@@ -1,18 +1,20 @@
-"""Where two solutions of a search nearly meet just where its branches do: none is lost, in any language.
-
-With some shifts zero, the residual depends on the elbow by its cosine alone: next to a stretched elbow it has two roots
-whose joints agree in all digits but the last, one on each side. The second arm also leaves an axis nearly free there.
-"""
+"""Where solutions meet and where two lengths vanish together: no pose is lost, and every answer meets its pose."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import pytest
 import softkin
+from softkin import Status
 
-from tests.machines.made import Array, made
+from derive.description.validate import validate
+from derive.frames import Ry, Rz, Ty, Tz
+from derive.mechanism import Task, Turning, length, rotary
+from derive.pipeline import Built, derive_and_measure, languages
+from tests.machines.made import Array, imported_class, made
 from tests.machines.searched_machines import POINTS
 from tests.machines.spoken import asked_in
+from tests.machines.textbook import textbook
 from tests.text.controller import OK
 
 pytestmark = pytest.mark.slow
@@ -83,3 +85,37 @@ def test_other_languages_answer_every_planted_pose(name: str, language: str) -> 
     for row, found in zip(axes, answer["found"], strict=True):
         assert found["status"] == 0, row.tolist()
         assert is_met(robot, found["axes"], robot.forward(tuple(row))[0])
+
+
+A1, A2, A3, A4, A5, A6 = JOINTS = tuple(rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
+LINK, BESIDE = length("link", "upper arm and forearm", nominal=300.0), length("beside", "wrist, tool", nominal=100.0)
+ARM = textbook(
+    (*JOINTS, LINK, BESIDE),
+    "FoldedAtTheWrist",
+    Rz(A1) * Ry(A2) * Rz(A3) * Tz(LINK) * Ry(A4) * Tz(LINK) * Ty(BESIDE) * Rz(A5) * Ry(A6) * Tz(BESIDE),
+    Task("xyz", Turning.FULL),
+)
+SIZES = {"link": 300.0, "beside": 100.0}
+WITHIN, COUNT = 1e-11, 1000
+
+
+def test_an_answer_meets_its_pose() -> None:
+    """In millimetres and metres, with the pose itself and with zero as the reference."""
+    mechanism = validate(ARM)
+    whole = derive_and_measure(mechanism)
+    (python,) = languages(wanted=("python",))
+    made = imported_class(mechanism, Built("", "", None, {"python": python.part(whole)}, {}, whole.evidence))
+    rng = np.random.default_rng(41)
+    beside = rng.choice([-1.0, 0.0, 1.0], (COUNT, 6)) * 10.0 ** -rng.integers(5, 13, (COUNT, 6))
+    axes = 90.0 * rng.integers(-2, 3, (COUNT, 6)) + beside
+    axes[:, 3] = 180.0 + beside[:, 3]
+    axes[:, 4] = rng.choice([0.0, 180.0], COUNT) + beside[:, 4]
+    for unit in (1.0, 1e-3):
+        robot = made(**{name: size * unit for name, size in SIZES.items()})
+        positions, rotations, configurations, _ = robot.forward_batch(axes)
+        for near in (axes, np.zeros_like(axes)):
+            found, statuses = robot.inverse_batch(positions, rotations, configurations, near)
+            assert (statuses == Status.OK).all()
+            again, turned = robot.forward_batch(found)[:2]
+            assert np.abs(again - positions).max() / (sum(SIZES.values()) * unit) <= WITHIN
+            assert np.abs(turned - rotations).max() <= WITHIN

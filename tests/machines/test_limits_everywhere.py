@@ -29,7 +29,7 @@ from tests.javascript.node import run
 from tests.machines.limited_machines import GIVEN, IMPORTED, OWN, Limited, limited_machine
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
-from tests.view.node_page import page_module
+from tests.view.pages import page_module
 
 pytestmark = pytest.mark.slow
 

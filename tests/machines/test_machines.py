@@ -10,15 +10,16 @@ from softkin import KinematicsError, Status
 
 from tests.catalogue.refusals import refusal
 from tests.machines.both import forward_in_both
+from tests.machines.carried import CARRIED
 from tests.machines.chain_machines import BENT_WRISTS
 from tests.machines.collection import COSTLY, MACHINES, PARAMETERS_DECIDE, SOLUTIONS
 from tests.machines.grid import grid, is_own, margins
 from tests.machines.made import Array, Made, made
 from tests.text.controller import OK
 
-pytestmark = pytest.mark.slow(*COSTLY)
+pytestmark = pytest.mark.slow(*COSTLY, *CARRIED)
 
-EVERY = pytest.mark.parametrize("name", MACHINES)
+EVERY = pytest.mark.parametrize("name", [*MACHINES, *CARRIED])
 _CLOSED, _SAME, _NEAR_SINGULAR = 1e-9, 1e-7, 1e-3
 _DOUBLE, _NEAR_DOUBLE = 1e-6, 1e-3
 
@@ -66,21 +67,19 @@ def test_the_number_of_solutions(name: str) -> None:
     """The witness counts them; it has also compared every slot, the Jacobian and the margins with the closure."""
     evidence = made(name).built.evidence
     assert evidence is not None and evidence.inverted is not None
-    assert evidence.inverted.solutions == SOLUTIONS[name]
+    assert evidence.inverted.solutions == SOLUTIONS.get(name, 4)  # in one assembly mode of a loop
 
 
 @EVERY
 def test_every_solution_closes_and_no_pose_is_lost(name: str) -> None:
     machine = made(name)
     axes = own_grid(machine)
-    assert len(axes) > 50
+    assert len(axes) > 20
     positions, rotations = machine.closure.poses(axes)
     slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
     found = statuses == Status.OK
     assert found.any(axis=1).all(), "a pose at which the machine stands is refused in every slot"
-    for slot in range(slots.shape[1]):
-        rows = found[:, slot]
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+    assert machine.worst(slots, statuses, positions, rotations) <= _CLOSED
 
 
 @EVERY
@@ -94,9 +93,7 @@ def test_an_answer_closes_from_any_reference(name: str) -> None:
     references = np.where(held, axes, axes + turned * np.where(machine.closure.angles, 1.0, machine.reach))
     slots, statuses = machine.robot.inverse_all_batch(positions, rotations, references)
     assert (statuses == Status.OK).any()
-    for slot in range(slots.shape[1]):
-        rows = statuses[:, slot] == Status.OK
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= _CLOSED
+    assert machine.worst(slots, statuses, positions, rotations) <= _CLOSED
 
 
 @EVERY
@@ -107,7 +104,7 @@ def test_the_way_back(name: str) -> None:
     axes = axes[is_own(machine, axes)]
     regular = np.array([min(np.abs(margins(machine, row)), default=1.0) > _NEAR_SINGULAR for row in axes.tolist()])
     positions, rotations, configurations, statuses = machine.robot.forward_batch(axes[regular])
-    assert (statuses == Status.OK).all() and regular.sum() > 50
+    assert (statuses == Status.OK).all() and regular.sum() > 20
     back, statuses = machine.robot.inverse_batch(positions, rotations, configurations, axes[regular])
     assert (statuses == Status.OK).all()
     assert np.abs(back - axes[regular]).max() <= 1e-6
@@ -139,14 +136,16 @@ def test_garbage_ends_in_a_status(name: str) -> None:
     frame, _ = machine.robot.forward(axes[is_own(machine, axes)][-1])
     controller = machine.controller() if machine.has_block else None
     for garbage in (float("nan"), float("inf"), -float("inf"), 1e300):
-        wrong = (garbage, 0.0, 0.0), frame.rotation
+        turned = ((garbage, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+        wrong = [((garbage, 0.0, 0.0), frame.rotation)]
+        wrong += [(frame.position, turned)] if machine.robot.READS_ROTATION else []
         with pytest.raises(KinematicsError):
             machine.robot.forward([garbage] * count)
-        with pytest.raises(KinematicsError):
-            machine.robot.inverse(wrong, None, [0.0] * count)
-        if controller is not None:
-            assert controller.forward([garbage] * count)[0] != OK
-            assert controller.inverse(*wrong, (), [0.0] * count)[0] != OK
+        assert controller is None or controller.forward([garbage] * count)[0] != OK
+        for pose in wrong:
+            with pytest.raises(KinematicsError):
+                machine.robot.inverse(pose, None, [0.0] * count)
+            assert controller is None or controller.inverse(*pose, (), [0.0] * count)[0] != OK
 
 
 @pytest.mark.parametrize("name", BENT_WRISTS)
@@ -161,9 +160,7 @@ def test_a_leaning_axis_keeps_its_digits_near_zero(name: str, degrees: float) ->
     slots, statuses = machine.robot.inverse_all_batch(positions, rotations, axes)
     away = np.where(statuses == Status.OK, np.abs(slots[:, :, bent] - axes[:, None, bent]), np.inf)
     assert away.min(axis=1).max() <= 1e-11
-    for slot in range(slots.shape[1]):
-        rows = statuses[:, slot] == Status.OK
-        assert machine.error(slots[rows, slot], positions[rows], rotations[rows]).max(initial=0.0) <= 1e-12
+    assert machine.worst(slots, statuses, positions, rotations) <= 1e-12
 
 
 def test_a_flange_that_bars_keep_level_turns_about_one_axis() -> None:

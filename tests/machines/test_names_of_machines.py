@@ -13,6 +13,7 @@ from derive.emit.python import package
 from derive.emit.python.entries import class_name, module_name
 from derive.kinematics.build import build
 from tests.native.test_names import named
+from tests.outside import written
 
 PACKAGE = Path(softkin.__file__).parent
 MODULES = {module for module, _ in softkin._CLASSES.values()}
@@ -54,10 +55,7 @@ def test_no_machine_has_a_name_of_the_package() -> None:
 @pytest.mark.slow
 def test_both_can_be_had(tmp_path: Path) -> None:
     """A package of machines that are called so, and used."""
-    for path, text in package.files([package.part(build(named(name))) for name in NAMES]).items():
-        target = tmp_path / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(text, encoding="utf-8")
+    written(package.files([package.part(build(named(name))) for name in NAMES]), tmp_path)
     command = [sys.executable, "-W", "error", "-c", USED]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.stdout.strip(), done.stderr) == (str(len(NAMES)), "")

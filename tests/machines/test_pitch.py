@@ -30,17 +30,11 @@ from tests.machines.task_machines import (
     Y,
     Z,
 )
+from tests.orthonormal import random_rotations
 from tests.text.controller import OK
 
 FOLLOWING = {**WITH_PITCH, **WITH_PITCH_AND_ROLL}
 EVERY = pytest.mark.parametrize("name", FOLLOWING)
-
-
-def rotations(count: int) -> Array:
-    left, _, right = np.linalg.svd(np.random.default_rng(3).normal(size=(count, 3, 3)))
-    found = left @ right
-    found[:, :, 0] *= np.linalg.det(found)[:, None]
-    return np.asarray(found)
 
 
 def within_reach(machine: Made, count: int) -> Array:
@@ -62,7 +56,7 @@ def test_no_other_direction_of_the_arm_is_nearer_to_the_commanded_one(name: str)
     positions, _ = machine.closure.poses(axes)
     around = np.linspace(-180.0, 180.0, 721)
     compared = 0
-    for reference, position, commanded in zip(axes, positions, rotations(len(axes)), strict=True):
+    for reference, position, commanded in zip(axes, positions, random_rotations(len(axes), 3), strict=True):
         for solution in machine.robot.inverse_all((position, commanded), reference):
             if solution.axes is None:
                 continue

@@ -60,7 +60,7 @@ def built(folder: Path = FOLDER, options: Sequence[str] = ("-O3",), sources: Pat
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        shared = "".join(path.read_text() for path in sorted(sources.glob("*.h")) if not _is_of_a_machine(path))
+        shared = "".join(path.read_text() for path in sorted(sources.glob("*.h")) if path.name in SHARED)
         with ThreadPoolExecutor(2) as pool:
             objects = list(pool.map(lambda path: _object(path, folder, command, shared), sorted(sources.glob("*.c"))))
         target = folder / f"{EXTENSION}.abi3.so"
@@ -71,10 +71,6 @@ def built(folder: Path = FOLDER, options: Sequence[str] = ("-O3",), sources: Pat
         for old in set(folder.glob("*.o")) - set(objects):
             old.unlink()
     return folder
-
-
-def _is_of_a_machine(path: Path) -> bool:
-    return path.name not in SHARED
 
 
 def _object(source: Path, folder: Path, command: Sequence[str], shared: str) -> Path:

@@ -92,14 +92,8 @@ def test_trusted_garbage(name: str) -> None:
                 continue  # the native core divides by zero where Python raises an error
             assert not failed or found == expected, (call, frame, found, expected)
     for wrong in (
-        (),
-        (1, 1, 1, 1, 1, 1, 1),
-        (0,) * robot.BRANCHES,
-        (2,) * robot.BRANCHES,
-        None,
-        "111",
-        [1] * robot.BRANCHES,
-    ):
+        (), (1, 1, 1, 1, 1, 1, 1), (0,) * robot.BRANCHES, (2,) * robot.BRANCHES, None, "111", [1] * robot.BRANCHES,
+    ):  # fmt: skip
         outcome(robot.branch, ((1.0, 2.0, 3.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))), wrong, near)
 
 

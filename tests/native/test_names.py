@@ -1,6 +1,5 @@
 """Machines that are called like files of the core: each has its own files, and all of them make one extension."""
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from derive.frames import Rz, Tx, Tz
 from derive.kinematics.build import build
 from derive.mechanism import Mechanism, Task, branch, length, linear, rotary
 from tests.native.build import built
+from tests.outside import output_of, written
 
 NAMES = ("Arm", "Arm_Lanes", "Batches", "Lanes", "Machine", "Machines", "Math", "Python", "Softkin")
 
@@ -37,9 +37,7 @@ def test_files_of_their_own(tmp_path: Path) -> None:
     sources = tmp_path / native.FOLDER
     sources.mkdir()
     for one in parts:
-        for path, text in one.items():
-            (tmp_path / path).write_text(text)
+        written(one, tmp_path)
     folder = built(tmp_path / "built", ("-O0",), sources)
     code = "from _softkin_native import MACHINES; print(*MACHINES, sep='\\n')"
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, check=True, capture_output=True, text=True)
-    assert done.stdout.splitlines() == [native.key(kin) for kin in found]
+    assert output_of([sys.executable, "-c", code], cwd=folder).splitlines() == [native.key(kin) for kin in found]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from derive.description.mechanism import Joint
-from tests.catalogue.turns.ranges import number_of
+from tests.catalogue.turns.axes import number_of
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample
 

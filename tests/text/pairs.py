@@ -7,10 +7,9 @@ from functools import cache
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.driven_machines import DRIVEN, driven_machines_of
-from tests.text import comparisons
-from tests.text.comparisons import Comparison
+from tests.text.comparisons import COMPARISONS, Comparison
 from tests.text.limits import limited
-from tests.text.loops import answers
+from tests.text.loops.machines import COMPARISONS as OF_LOOPS
 from tests.text.loops.machines import LOOPS, Loop, loops_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 
@@ -31,4 +30,4 @@ def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
 
 def comparisons_of(mechanism: Mechanism) -> Mapping[str, Comparison]:
     """The expected answers of all methods of its block."""
-    return answers.COMPARISONS if mechanism.rods else comparisons.COMPARISONS
+    return OF_LOOPS if mechanism.rods else COMPARISONS

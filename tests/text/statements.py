@@ -1,11 +1,17 @@
-"""Which statements of a text were executed."""
+"""The statements of a text: those that run, and how many there are."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
+from functools import cache
 from itertools import compress
+from typing import Any
 
+from bench import counting
+from derive.description.mechanism import Mechanism
+from derive.report.cost import Cost
 from tests.harness.faults import Place
 from tests.harness.library import Library
+from tests.text.units import file_of, shared_texts, text_of
 
 
 class Statements:
@@ -45,3 +51,16 @@ def _numbered(files: frozenset[str], libraries: Iterable[Library]) -> dict[Place
     places = (place for library in libraries for place in library.origin.places if place is not None)
     own = dict.fromkeys(place for place in places if place.file in files)
     return {place: number for number, place in enumerate(own, 1)}
+
+
+@cache
+def counting_units(mechanism: Mechanism | None = None) -> Library:
+    """The shared functions, with the unit of a mechanism if there is one, counting."""
+    own = {} if mechanism is None else {file_of(mechanism): text_of(mechanism)}
+    return counting.counting_library({**shared_texts(), **own})
+
+
+def counted(call: Callable[..., Any], *arguments: Any, **named: Any) -> Cost:
+    """What a call did."""
+    _, found = counting.counted(call, *arguments, **named)
+    return Cost(**found.of_kinds())

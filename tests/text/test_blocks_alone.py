@@ -1,17 +1,24 @@
-"""Properties of a block by itself: its methods agree with one another."""
+"""Blocks alone: every method, also inherited, and what was worked out by hand."""
 
 import math
 
 import numpy as np
 import pytest
 
+from bench.blocks import FOLDER, KINDS, Kind, measured
 from derive.description.mechanism import Mechanism, Turning
+from derive.emit.softmotion.base import INHERITED
+from tests.catalogue.coupling.parts import ORIENTATIONS
 from tests.catalogue.references import held_at
 from tests.harness.library import Library
-from tests.text.controller import OK, UNREACHABLE, Controller
+from tests.text.any_method import call_of, methods_of
+from tests.text.comparisons import POSELESS
+from tests.text.controller import IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
+from tests.text.loops.machines import LOOPS, Loop
+from tests.text.pairs import POSITION_KINEMATICS, Pair, comparisons_of, pairs_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
-from tests.text.units import compiled_text, file_of, text_of
+from tests.text.units import compiled, compiled_text, file_of, public_methods, text_of
 
 ROUND_TRIP = 1e-9
 """Away from singular poses: relative to a turn, or to the size of the machine."""
@@ -154,3 +161,119 @@ def test_a_gear_of_one_turn_changes_nothing() -> None:
     for sample in one.regular[:10]:
         axes = [value + 360.0 * k for k, value in enumerate(sample.axes)]
         assert other.forward(axes) == one.controller.forward(axes)
+
+
+METHODS = [(mechanism, method) for mechanism in POSITION_KINEMATICS for method in public_methods(mechanism)]
+"""Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
+ITERATED = ("Hexapod", "Hexaglide", "3RRR", "ThreeParallel")
+DEAR = tuple(f"{name}.{method}" for name in ITERATED for method in ("CartesianToAxes", "Diagnose"))
+"""What takes long: inverse kinematics of machines that iterate."""
+EVERYWHERE = (
+    "AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian",
+    "AxesToConfiguration_Offset", "CartesianToAxes_Offset",
+)  # fmt: skip
+"""Methods of loops that are asked for axis values at which no loop closes as well."""
+
+
+def test_every_loop_is_here() -> None:
+    """Every mechanism with rods is compared."""
+    assert len(LOOPS) == 17
+
+
+@pytest.mark.parametrize("mechanism", POSITION_KINEMATICS, ids=lambda m: m.name)
+def test_every_method_is_here(mechanism: Mechanism) -> None:
+    """Every public method in the text of a block is compared."""
+    library = compiled(mechanism)
+    block, base = library.objects[mechanism.block_name], library.objects["Softkin_Kinematics"]
+    own, inherited = ([m.name for m in b.methods if m.access == "PUBLIC"] for b in (block, base))
+    found = public_methods(mechanism)
+    assert list(found[: len(own)]) == own and set(found[len(own) :]) <= set(inherited)
+    assert {"Initialize", "Jacobian", "AxisVelocities"} <= set(found)
+
+
+@pytest.mark.slow(*DEAR)
+@pytest.mark.long("Hexapod", "P2C_Type1.CartesianToAxes", "Pos_RRR.CartesianToAxes", "ToAxes_Offset", "Diagnose")
+@pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
+def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
+    compare = comparisons_of(mechanism)[method]
+    for pair in pairs_of(mechanism):
+        regular = pair.regular[:: 2 if isinstance(pair, Loop) else 1]  # which has many, for its limits
+        for sample in regular[: 3 if method in POSELESS else None]:
+            compare(pair, sample)
+        for sample in pair.any if isinstance(pair, Loop) and method in EVERYWHERE else ():
+            compare(pair, sample)
+
+
+def further_methods(controller: Controller) -> list[str]:
+    """The public methods of the base that no interface of the block has."""
+    known = {"Initialize", *methods_of(controller)}
+    return sorted(INHERITED - known)
+
+
+@pytest.mark.long("Hexa", "3RRR", "P2C", "Pos_RRR")
+def test_a_further_method_answers_or_is_impossible(pairs: tuple[Pair, ...]) -> None:
+    """What forward kinematics tells is answered; what a flange does not do is impossible, and writes nothing."""
+    one = pairs[0]
+    for method in further_methods(one.controller):
+        call = call_of(one, one.controller, method, one.regular[0])
+        before = call.state()
+        result, after = call.run()
+        if call.has_status:
+            assert result in (OK, IMPOSSIBLE), method
+            assert result == OK or after == before, method
+
+
+def test_every_block_knows_its_orientation(pairs: tuple[Pair, ...]) -> None:
+    """AxesToOrientation is the rotation that AxesToCartesian finds, whatever the interfaces of the block are."""
+    for one in pairs[:2]:
+        for sample in one.regular[:3]:
+            status, found = one.controller.orientation(sample.axes)
+            assert status == OK
+            np.testing.assert_allclose(found, one.controller.forward(sample.axes)[1][1], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("mechanism", [m for m in ORIENTATIONS if m.joints], ids=lambda m: m.name)
+def test_orientation_blocks_answer_or_say_impossible(mechanism: Mechanism) -> None:
+    """A wrist knows its orientation; it has no offset of its own."""
+    library = compiled(mechanism)
+    controller = Controller(library, mechanism)
+    assert controller.initialise({p.name: p.nominal for p in mechanism.parameters}) == OK
+    axes = tuple(10.0 + 7.0 * k for k, _ in enumerate(mechanism.joints))
+    assert {"AxesToOrientation", "CartesianToAxes_Offset"} <= set(further_methods(controller))
+    status, rotation = controller.orientation(axes)
+    assert status == OK
+    _, (position, turned, data) = controller.forward(axes)
+    np.testing.assert_allclose(rotation, turned, rtol=0, atol=1e-12)
+    status, _ = controller.inverse_offset(position, (0.0, 0.0, 0.0), data, axes)
+    assert status == IMPOSSIBLE
+    assert controller.image_with_orientation(rotation)[0] in (OK, IMPOSSIBLE)
+
+
+RATIO = 1.3
+"""The algebra to that by hand, at most."""
+CALLS = 30
+"""Calls of functions a solution, at most."""
+ROUNDING = 1e-13
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda k: k.name)
+def test_the_text_by_hand_is_right(kind: Kind) -> None:
+    """Forward kinematics, which the closure has proven, leads from its answers back to the pose, on its branch."""
+    found = measured(kind)
+    assert found.poses >= 40
+    assert found.missed < ROUNDING
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda k: k.name)
+def test_a_call_costs_no_more_than_promised(kind: Kind) -> None:
+    """The whole call, all calls of functions, and the algebra beside that by hand."""
+    found = measured(kind)
+    assert found.call <= kind.most
+    assert found.calls <= CALLS
+    assert found.ratio <= RATIO
+    assert min(found.by_hand) > 30, "something was counted"
+
+
+def test_every_text_by_hand_is_measured() -> None:
+    """No text stands in the folder without being run."""
+    assert {path.stem for path in FOLDER.glob("*.st")} == {kind.by_hand for kind in KINDS}

@@ -115,7 +115,6 @@ def test_what_is_set_drives_inverse_kinematics(one: Pair) -> None:
 
 
 def test_a_branch_byte_that_means_nothing_is_refused(one: Pair) -> None:
-    """A branch byte above 3 is refused as in Python."""
     sample = one.regular[0]
     (position, rotation), own = one.robot.forward(sample.axes)
     for index, byte in product(range(one.robot.BRANCHES), range(4, 256)):

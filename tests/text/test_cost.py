@@ -24,8 +24,8 @@ from derive.report.cost import Cost, cost_of, costs_of, expression_cost, solve_c
 from derive.report.self_test import self_test
 from tests.mechanisms import catalogue, kinematics_of, named
 from tests.text.controller import OK, Controller
-from tests.text.counting import counted, counting_units
 from tests.text.samples import NO_TURN
+from tests.text.statements import counted, counting_units
 from tests.text.units import text_of
 from tests.text.values import Numbers
 

@@ -19,11 +19,8 @@ from tests.text import (
     test_blocks_alone,
     test_configuration_blocks,
     test_garbage,
-    test_inherited_methods,
     test_initialise,
     test_limits,
-    test_matrix_functions,
-    test_not_initialised,
     test_shared_functions,
     test_shared_matrices,
     test_singular_poses,
@@ -72,7 +69,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 
 
 def again(serial_pairs: tuple[SerialPair, ...]) -> Iterator[Callable[[], None]]:
-    """A few of the samples at which `test_every_method` asks all."""
+    """A few of the samples at which `test_blocks_alone` asks all."""
     for one in (one for one in serial_pairs if one.machine.label in MACHINES):
         yield from (partial(compare_all, one, sample, POSED) for sample in few(one.regular, FEW))
 
@@ -100,10 +97,9 @@ def singular(
 
 
 def test_every_statement_of_the_shared_objects_runs() -> None:
-    """The tests execute every statement of the shared functions."""
-    kinds = product(test_matrix_functions.ORDERS, (72, 36))
-    libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
-    libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
+    kinds = product(test_shared_matrices.ORDERS, (72, 36))
+    libraries = [compiled_shared(), *(test_shared_matrices.library(*kind) for kind in kinds)]
+    libraries += [test_shared_matrices.misbehaving(name) for name in test_shared_matrices.BROKEN]
     scara, arm = (next(m for m in MECHANISMS if m.block_name == name) for name in OF_THE_BASE)
     for mechanism in (scara, arm):
         libraries += [compiled(mechanism), compiled(mechanism, matrix_size=36)]
@@ -123,14 +119,14 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
             test_initialise.test_a_configuration_that_is_too_small_is_refused(pairs)
             test_garbage.test_garbage_in_one_number(pairs)
             test_garbage.test_what_is_no_rotation(pairs)
-            test_not_initialised.test_no_method_works(pairs, test_not_initialised.fresh)
+            test_initialise.test_no_method_works(pairs, test_initialise.fresh)
             for one in pairs[:4]:
                 for sample in (*few(one.regular, FEW), *few(one.grid, A_FEW)):
                     compare_all(one, sample)
         test_blocks_alone.test_a_gear_of_one_turn_changes_nothing()
         for mechanism in (scara, five_axes, *straight):
-            test_inherited_methods.test_every_block_knows_its_orientation(serial_pairs_of(mechanism))
-            test_inherited_methods.test_a_further_method_answers_or_is_impossible(serial_pairs_of(mechanism))
+            test_blocks_alone.test_every_block_knows_its_orientation(serial_pairs_of(mechanism))
+            test_blocks_alone.test_a_further_method_answers_or_is_impossible(serial_pairs_of(mechanism))
             compare_all(serial_pairs_of(mechanism)[0], serial_pairs_of(mechanism)[0].regular[0])
         directed = serial_pairs_of(five_axes)[1]
         provoke(directed, directed.regular[0])
@@ -141,13 +137,13 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
         for test in (*vars(test_shared_functions).values(), *vars(test_shared_matrices).values()):
             if getattr(test, "__name__", "").startswith("test_") and not hasattr(test, "pytestmark"):
                 test()
-        for order in test_matrix_functions.ORDERS:
-            test_matrix_functions.test_the_order_is_found(order)
-            test_matrix_functions.test_read_and_write(order)
-        for name in test_matrix_functions.BROKEN:
-            test_matrix_functions.test_no_order_where_the_library_behaves_otherwise(name)
-        test_matrix_functions.test_no_order_where_the_size_differs(36)
-        test_matrix_functions.test_nothing_is_touched_where_the_matrix_is_not_known(36, "Rows")
+        for order in test_shared_matrices.ORDERS:
+            test_shared_matrices.test_the_order_is_found(order)
+            test_shared_matrices.test_read_and_write(order)
+        for name in test_shared_matrices.BROKEN:
+            test_shared_matrices.test_no_order_where_the_library_behaves_otherwise(name)
+        test_shared_matrices.test_no_order_where_the_size_differs(36)
+        test_shared_matrices.test_nothing_is_touched_where_the_matrix_is_not_known(36, "Rows")
     assert [str(place) for place in statements.left_out() if not is_head(str(place))] == []
 
 
@@ -198,7 +194,7 @@ def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Ite
     """
     yield partial(test_blocks_alone.test_the_number_of_axes, serial_pairs)
     yield partial(test_blocks_alone.test_calling_the_block_itself_does_nothing, serial_pairs)
-    yield partial(test_not_initialised.test_no_method_works, serial_pairs, test_not_initialised.fresh)
+    yield partial(test_initialise.test_no_method_works, serial_pairs, test_initialise.fresh)
     yield partial(test_initialise.test_limits_are_in_order, serial_pairs, 10.0, 10.0)
     yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, serial_pairs, 36)
     yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, serial_pairs)

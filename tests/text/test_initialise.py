@@ -1,9 +1,12 @@
-"""Initialize: its refusals; no other method reads the inputs."""
+"""Initialize: what it refuses, and that no method works before it or after one that refused."""
+
+from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import pytest
 import softkin
@@ -12,10 +15,11 @@ from derive.description.mechanism import Mechanism, Parameter, Role
 from derive.kinematics.parameters import machine_parameters
 from tests.catalogue.machines import LENGTHS
 from tests.harness.library import Library, StError
-from tests.text.any_method import call_of, methods_of
+from tests.text.any_method import Call, call_of, methods_of
 from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked
 from tests.text.pairs import Pair
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.test_garbage import MOTIONS
 from tests.text.units import compiled, compiled_text, file_of, text_of
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300)
@@ -106,7 +110,6 @@ def test_a_length_has_no_default(pairs: tuple[Pair, ...]) -> None:
 @pytest.mark.broad
 @pytest.mark.parametrize("size", [36, 80])
 def test_a_matrix_of_another_size_is_refused(pairs: tuple[Pair, ...], size: int) -> None:
-    """Initialize refuses a library whose matrix has another size."""
     mechanism = pairs[0].mechanism
     controller = Controller(compiled(mechanism, matrix_size=size), mechanism)
     assert controller.initialise(pairs[0].robot.parameters) == NOT_INITIALIZED
@@ -158,3 +161,75 @@ def spoiled(parameter: Parameter, value: float) -> float:
     if parameter.role is Role.FLAG:
         return 1.0 - value
     return -value if parameter.role is Role.SIGN else math.nan
+
+
+State = dict[str, dict[Any, Any]]
+INDEPENDENT = {
+    "GetKinematicsName", "GetConfigurationDataSize", "GetDefaultConfigurationData", "CPConnectible",
+    "ActivateAutomaticRotaryPeriods", "IsConfigSingular", "GetPeriods", "AxisSettings",
+}  # fmt: skip
+"""Methods that need no parameter, and work as ever: AxisSettings keeps what it is given for Initialize."""
+
+
+def is_free(result: Any, before: State, after: State) -> bool:
+    """Whether the axis is said to have no limits."""
+    return after["props"]["limits", "xUnlimited"] is True
+
+
+def is_unknown(result: Any, before: State, after: State) -> bool:
+    """Whether only the freedom of the orientation was written, as unknown."""
+    return after["oriInfo"] == before["oriInfo"] | {("dof",): "three"}
+
+
+def is_automatic(result: Any, before: State, after: State) -> bool:
+    """Whether every byte leaves its branch or turn open."""
+    return set(after["cd"].values()) == {0}
+
+
+NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
+    "InitializeReason": lambda result, before, after: result != "",
+    "IsInitialized": lambda result, before, after: result is False,
+    "Diagnose": lambda result, before, after: result == "not initialized",
+    "IsSingularity": lambda result, before, after: result is True,
+    "GetAxisProperties": is_free,
+    "GetOrientationImage": is_unknown,
+    "AxesToConfiguration_Offset": is_automatic,
+}
+"""What methods without a status answer."""
+
+
+def fresh(one: SerialPair) -> Controller:
+    """A block that was never initialised."""
+    return Controller(one.library, one.mechanism)
+
+
+def refused(one: SerialPair) -> Controller:
+    """A block that was initialised, and then refused other inputs."""
+    controller = fresh(one)
+    assert controller.initialise(one.robot.parameters) == OK
+    assert controller.initialise({"offset_" + one.mechanism.joints[-1].key: math.inf}) == NOT_INITIALIZED
+    return controller
+
+
+@pytest.mark.parametrize("made", [fresh, refused])
+def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], Controller]) -> None:
+    """No method works before Initialize, and outputs stay as they are."""
+    one = pairs[-1]
+    controller = made(one)
+    for method in methods_of(controller):
+        call = call_of(one, controller, method, one.regular[0])
+        before = call.state()
+        result, after = call.run()
+        if method in INDEPENDENT:
+            assert (result, after) == working(one, call, method)
+        elif found := MOTIONS.get(method.removesuffix("From")):
+            assert result == NOT_INITIALIZED and set(after[found].values()) == {0.0}
+        elif call.has_status:
+            assert (result, after) == (NOT_INITIALIZED, before), method
+        else:
+            assert NEUTRAL[method](result, before, after), f"{method} {result} {after}"
+
+
+def working(one: SerialPair, call: Call, method: str) -> tuple[Any, State]:
+    """What the same method of an initialised block answers."""
+    return call_of(one, one.controller, method, one.regular[0]).run()

@@ -241,5 +241,4 @@ def test_the_head_of_an_interface_alone_names_the_system() -> None:
 
 
 def test_a_violation_names_its_line() -> None:
-    """A violation is reported with its line."""
     assert [one.line for one in lint(_BODY.replace("x := y;", "x := FLOOR(y);"))] == [7]

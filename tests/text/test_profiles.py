@@ -143,7 +143,6 @@ def test_profiles_are_joined() -> None:
 
 
 def test_the_oldest_documented_library_has_them_all() -> None:
-    """The oldest documented library has every interface."""
     assert contract("4.11").omits == contract(None).omits == frozenset()
     assert rendered("4.11") == rendered(None)
 
@@ -194,7 +193,6 @@ def test_an_unknown_profile_is_refused_at_once(
 
 @pytest.mark.slow
 def test_a_profile_is_generated_and_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Files that are generated for a profile pass the check for that profile alone."""
     folder, output = tmp_path / "mechanisms", tmp_path / "out"
     folder.mkdir()
     source = (MECHANISMS / "kin_scara2_z.py").read_text(encoding="utf-8")

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.outside import output_of
+
 HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1] / "generated/python"
 MYPY = ("mypy", "--strict", "--no-error-summary", "--cache-dir", str(HERE.parents[1] / ".mypy_cache"))
@@ -58,11 +60,4 @@ def test_strict_checkers(checker: object, tmp_path: Path) -> None:
 
 def test_the_uses_run() -> None:
     """What type checkers accept works."""
-    done = subprocess.run(
-        [sys.executable, str(HERE / "uses.py")],
-        env={"PYTHONPATH": str(PACKAGE)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    output_of([sys.executable, HERE / "uses.py"], env={"PYTHONPATH": str(PACKAGE)})

@@ -4,11 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.fresh import Generation
-from tests.view.available import available
-from tests.view.driver import BROWSER, driven
-from tests.view.pages import catalogue_page, kept_modules, own_page
-from tests.view.states import Seen
+from tests.generation import Generation
+from tests.view.driver import BROWSER, available, driven
+from tests.view.pages import Seen, catalogue_page, kept_modules, own_page
 
 PICTURES = Path(__file__).parents[2] / "build" / "view"
 """The pictures of the last run, to be looked at."""

@@ -1,20 +1,27 @@
-"""The pages that the browser opens: the whole catalogue, and a machine of a user with a mesh of its own."""
+"""Pages of the viewer: made, opened, and what is seen on them."""
 
 import json
+import shutil
 import struct
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+import softkin
+from PIL import Image
 
 from derive.cache import Cache, foundation
 from derive.command.catalogue import OUTPUT
 from derive.command.view import PACKAGES, content_of
 from derive.emit.javascript import package as javascript
+from derive.emit.language import RUNTIME, Part
 from derive.pipeline import work_of
 from derive.view.page import Content, page
-from tests.javascript.modules import files_of, part_of
+from tests.javascript.modules import files_of, part_of, written
 from tests.mechanisms import catalogue
+from tests.outside import output_of
 
 _CORNERS = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
 
@@ -85,5 +92,63 @@ def own_page(folder: Path) -> Path:
 def _run(folder: Path, *arguments: str) -> None:
     command = [sys.executable, "-m", "derive", *arguments]
     environment = {"PYTHONPATH": str(OUTPUT.parent), "PATH": "", "HOME": str(folder)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    output_of(command, cwd=folder, env=environment)
+
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "build" / "view" / "laptop_light.png"
+TARGET = ROOT / "docs" / "viewer.png"
+COLOURS = 160
+
+
+def main() -> None:
+    """Write the picture with few colours, so that it is small."""
+    with Image.open(SOURCE) as picture:
+        picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(TARGET, optimize=True)
+
+
+if __name__ == "__main__":
+    main()
+
+
+Seen = dict[str, Any]
+ARM = "Kin_ArticulatedRobot_6DOF"
+
+
+def robot_of(state: Seen) -> Any:
+    """The machine of a state in Python."""
+    return softkin.catalogue()[state["machine"]](**state["parameters"], limits=state["limits"])
+
+
+def frame_of(state: Seen) -> Any:
+    """The frame of a state."""
+    return state["frame"]["position"], state["frame"]["rotation"]
+
+
+def confirm(state: Seen) -> None:
+    """Python finds the same frame and configuration at the axes, and these axes from both; the fields show them."""
+    robot = robot_of(state)
+    frame, configuration = robot.forward(state["axes"])
+    assert np.allclose(frame.position, state["frame"]["position"], rtol=0, atol=1e-9)
+    assert np.allclose(frame.rotation, state["frame"]["rotation"], rtol=0, atol=1e-12)
+    assert list(configuration) == state["configuration"]
+    axes = robot.inverse(frame, configuration, reference=state["axes"])
+    assert np.allclose(axes, state["axes"], rtol=0, atol=1e-8)
+    shown = [float(text) for text in state["shownAxes"]]
+    assert np.allclose(shown, state["axes"], rtol=0, atol=6e-5)
+    margins = robot.singularity(state["axes"]).margins
+    assert margins.keys() == state["margins"].keys()
+    assert np.allclose(list(margins.values()), list(state["margins"].values()), rtol=0, atol=1e-11)
+
+
+ASKED = Path(__file__).with_name("model.mjs")
+
+
+def page_module(part: Part) -> Path:
+    """The module that asks the page of one machine."""
+    machines = written(part).parent
+    folder = machines / "page"
+    shutil.copytree(RUNTIME / "view", folder, ignore=shutil.ignore_patterns("package*"))
+    (folder / "machines").symlink_to(machines, target_is_directory=True)
+    (folder / "package.json").write_text('{"type": "module"}', encoding="utf-8")
+    return Path(shutil.copy(ASKED, folder))

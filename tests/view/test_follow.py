@@ -19,8 +19,7 @@ from derive.view.node import node
 from tests.command.files import ROOT
 from tests.controller.controllers import Plc, plc
 from tests.controller.pages import PATIENCE
-from tests.view.available import available
-from tests.view.driver import prepared
+from tests.view.driver import available, prepared
 from tests.view.pages import machine_page
 
 pytestmark = pytest.mark.slow

@@ -1,5 +1,8 @@
-"""The pages themselves: their size, their complaints, their links, their speed, and hostile texts in them."""
+"""The pages themselves, in a notebook too: every machine is drawn, fast, and hostile texts are texts."""
 
+from __future__ import annotations
+
+import json
 import re
 from base64 import b64encode
 from hashlib import sha256
@@ -7,15 +10,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import softkin
 
 from derive.command.view import PACKAGES
+from derive.view.node import node, run
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of
 from tests.machines.hostile import MARKS
 from tests.machines.test_hostile_text import Elements, pair
-from tests.mechanisms import named
-from tests.view.available import available
-from tests.view.states import ARM, Seen
+from tests.mechanisms import catalogue, named
+from tests.view.driver import available, prepared
+from tests.view.pages import ARM, Seen
 
 pytestmark = pytest.mark.slow
 
@@ -84,3 +89,59 @@ def test_the_policy_allows_this_program_alone() -> None:
     digest = b64encode(sha256(program[1].encode()).digest()).decode()
     assert re.findall(r"script-src ([^;]*);", policy[1]) == [f"'sha256-{digest}'"]
     assert text.index(policy[0]) < text.index("<script")
+
+
+@pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue()])
+def test_every_machine_is_drawn(name: str, seen: Seen) -> None:
+    """Its bodies alone cover part of the picture; it stands where Python says, with all its solutions."""
+    found = seen["machines"][name]
+    assert found["refusal"] is None
+    assert found["covered"] > 500
+    assert found["isLabelled"]
+    robot = softkin.catalogue()[name](**found["parameters"])
+    if not found["axes"]:
+        return
+    frame, configuration = robot.forward(found["axes"])
+    tolerance = 1e-6 if name in ("Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR") else 1e-9  # iterated
+    assert np.allclose(frame.position, found["frame"]["position"], rtol=0, atol=tolerance)
+    assert list(configuration) == found["configuration"]
+    there = (found["frame"]["position"], found["frame"]["rotation"])
+    slots = robot.inverse_all(there, reference=found["axes"])
+    assert sum(slot.status == softkin.Status.OK for slot in slots) == found["solutions"]
+
+
+@pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue() if mechanism.joints])
+def test_the_part_that_refuses_is_marked(name: str, seen: Seen) -> None:
+    """Far away every machine that ends somewhere refuses: the axis or the rod is marked that its sentence names."""
+    found = seen["machines"][name]["farAway"]
+    if found["reason"] is None:
+        assert found["marked"] == []
+        return
+    subject = re.split(r"[:,]| cannot | where ", found["reason"])[0]
+    kinds = {part.partition(" ")[0] for part in found["marked"]}
+    names = {part.partition(" ")[2] for part in found["marked"]}
+    axes = {axis.name for axis in softkin.catalogue()[name].AXES}
+    if subject in axes:
+        assert names and all(subject in words.split() or kinds == {"rod"} for words in names)
+    elif " " in subject:
+        rod = subject.rpartition("rod ")[2]
+        assert kinds == {"rod"} and {words.rstrip("ab") for words in names} == {rod}
+    elif subject == "a3_from_a2":
+        assert names == {"A2", "A2 A3", "A3"}
+    else:
+        assert kinds in ({"plate"}, {"tool"})
+
+
+def test_a_frame_in_a_notebook_shows_the_machine_at_its_pose(pages: tuple[Path, Path], tmp_path: Path) -> None:
+    """Dimensions, limits and axes are those of Python; the console has no error, and nothing is asked of a network."""
+    robot = softkin.Scara3Z(arm_length_1=310.0, arm_length_2=240.0, arm_length_3=90.0, limits={"Z": (-20.0, 180.0)})
+    axes = (10.0, -20.0, 30.0, 40.0)
+    around, answer = tmp_path / "notebook.html", tmp_path / "answer.json"
+    around.write_text(f"<!doctype html>{robot.view(axes, pages[0])._repr_html_()}", encoding="utf-8")
+    done = run([str(part) for part in (node(), available(prepared) / "frame.mjs", around, answer)], tmp_path)
+    assert answer.is_file(), done.stderr
+    shown = json.loads(answer.read_text(encoding="utf-8"))
+    assert shown["errors"] == [] and shown["machine"] == robot.NAME
+    assert shown["axes"] == pytest.approx(axes)
+    assert shown["parameters"] == {name: float(value) for name, value in robot.parameters.items()}
+    assert shown["frame"]["position"] == pytest.approx(robot.forward(axes)[0].position)

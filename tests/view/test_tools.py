@@ -7,8 +7,8 @@ import pytest
 
 from derive.view import node
 from derive.view.node import PACKAGES, MissingTool, installed
-from tests.view import available as told
-from tests.view.available import available
+from tests.view import driver as told
+from tests.view.driver import available
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from tests.catalogue.calls.robots import NAMES, poses, robots
+from tests.catalogue.calls.mountings import NAMES, poses, robots
 
 pytestmark = pytest.mark.broad
 

@@ -13,8 +13,17 @@ from softkin import KinematicsError, Mechanism, Status
 from softkin._core import PITCH
 from softkin._start import IterativeForward
 
-from tests.catalogue.calls.mountings import BASE, EVERY, confirm_copies, limited, machines, radian, tool_of
-from tests.catalogue.calls.robots import Axes, frame_at
+from tests.catalogue.calls.mountings import (
+    BASE,
+    EVERY,
+    Axes,
+    confirm_copies,
+    frame_at,
+    limited,
+    machines,
+    radian,
+    tool_of,
+)
 from tests.catalogue.refusals import refusal
 
 pytestmark = pytest.mark.broad

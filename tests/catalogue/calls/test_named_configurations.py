@@ -10,8 +10,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from tests.catalogue.calls.mountings import BASE, EVERY, limited, radian, tool_of
-from tests.catalogue.calls.robots import NAMES, poses, robots
+from tests.catalogue.calls.mountings import BASE, EVERY, NAMES, limited, poses, radian, robots, tool_of
 from tests.catalogue.refusals import refusal
 
 

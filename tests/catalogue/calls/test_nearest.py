@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 from softkin._start import IterativeForward
 
-from tests.catalogue.calls.robots import NAMES, Axes, drawn_limits, frame_at, poses, robots, with_limits
+from tests.catalogue.calls.mountings import NAMES, Axes, drawn_limits, frame_at, poses, robots, with_limits
 from tests.catalogue.refusals import refusal
 from tests.corpus.robots import Robot
 

@@ -10,7 +10,7 @@ import pytest
 import softkin
 from softkin import KinematicsError
 
-from tests.catalogue.calls.robots import NAMES, Axes, drawn_limits, frame_at, poses, robots, with_limits
+from tests.catalogue.calls.mountings import NAMES, Axes, drawn_limits, frame_at, poses, robots, with_limits
 
 
 def radian(robot: softkin.Mechanism, values: Any) -> Any:

@@ -11,8 +11,18 @@ import pytest
 import softkin
 from softkin import KinematicsError, Mechanism, Status
 
-from tests.catalogue.calls.mountings import BASE, EVERY, confirm_copies, machines, tool_of
-from tests.catalogue.calls.robots import NAMES, drawn_limits, poses, robots, with_limits
+from tests.catalogue.calls.mountings import (
+    BASE,
+    EVERY,
+    NAMES,
+    confirm_copies,
+    drawn_limits,
+    machines,
+    poses,
+    robots,
+    tool_of,
+    with_limits,
+)
 from tests.catalogue.refusals import refusal
 
 SCARA = {"link_length_1": 325.0, "link_length_2": 225.0}

@@ -141,7 +141,7 @@ def _what_cannot_be_had(
         commanded = flange @ _swing(rng) @ own
     elif second.mechanism.task.turning is Turning.DIRECTION:
         angle = rng.uniform(-np.pi, np.pi)
-        commanded = flange @ own @ _about_z(angle)
+        commanded = flange @ own @ rodrigues((0.0, 0.0, 1.0), angle)
     else:
         commanded = np.array(tilted(rng))
         if coupled.READS_ROTATION:
@@ -154,11 +154,6 @@ def _swing(rng: np.random.Generator) -> np.ndarray:
     """A turn about a horizontal axis: it tilts z and has no twist."""
     azimuth, tilt = rng.uniform(-np.pi, np.pi), rng.uniform(-2.5, 2.5)
     return rodrigues((np.cos(azimuth), np.sin(azimuth), 0.0), tilt)
-
-
-def _about_z(angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _jacobian(coupled: softkin.Coupled, values: list[float]) -> None:

@@ -1,15 +1,15 @@
 """Machines of any size, likely and absurd: no call faults, Structured Text ends as Python does, and home is found."""
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 import pytest
 from numpy.random import Generator
-from softkin import Hexapod, KinematicsError
+from softkin import Hexapod
 
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod.machines import machines, rotation
+from tests.catalogue.refusals import status_of
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
@@ -24,15 +24,6 @@ KINDS: dict[str, Callable[[Generator, float], float]] = {
 }
 
 
-def status_of(call: Callable[[], object]) -> str:
-    """How a call of Python ends."""
-    try:
-        call()
-    except KinematicsError as refused:
-        return refused.status.softmotion
-    return OK
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_machine_of_any_shape(kind: str) -> None:
     """The block accepts exactly the dimensions that Python accepts, and both answer alike."""
@@ -42,7 +33,7 @@ def test_a_machine_of_any_shape(kind: str) -> None:
         given |= {n: float(rng.uniform(-360.0, 360.0)) for n in ANGLES if rng.random() < 0.3}
         block = Controller(compiled(MECHANISM), MECHANISM)
         status = block.initialise(given)
-        assert status == status_of(partial(Hexapod, **given))
+        assert status == status_of(Hexapod, **given).softmotion
         if status == OK:
             started += 1
             same_ends(block, Hexapod(**given), rng)
@@ -72,11 +63,11 @@ def same_ends(block: Controller, robot: Hexapod, rng: Generator) -> None:
         position = np.clip(home + (k > 0) * rng.normal(size=3) * size * 10.0 ** rng.uniform(-6, 1), -1e9, 1e9)
         rows = turn if k < 3 else rotation(*rng.uniform(-180.0, 180.0, 3))
         status, found = block.inverse(position, rows, (), (0.0,) * 6)
-        assert status == status_of(partial(robot.inverse, (position, rows)))
+        assert status == status_of(robot.inverse, (position, rows)).softmotion
         axes = found or tuple(10.0 ** rng.uniform(-9, 9, 6))
         ended, pose = block.forward(axes)
-        assert ended == status_of(partial(robot.forward, axes))
-        assert block.jacobian(axes)[0] == status_of(partial(robot.jacobian, axes))
+        assert ended == status_of(robot.forward, axes).softmotion
+        assert block.jacobian(axes)[0] == status_of(robot.jacobian, axes).softmotion
         block.is_singular(axes)
         if k == 0 and found:
             assert ended == OK and np.abs(np.array(pose[0]) - home).max() <= 1e-9 * size

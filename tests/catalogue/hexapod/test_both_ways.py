@@ -1,14 +1,18 @@
-"""There and back: in closed form, and by forward kinematics from home, from a start, without memory, in batches."""
+"""There and back, as others compute it and with frames of a few digits; from home, from a start, in batches."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+import softkin
 from numpy.testing import assert_allclose
-from softkin import Frame, KinematicsError, Status
+from softkin import Frame, Hexapod, KinematicsError, Status
 
-from tests.catalogue.hexapod.machines import Array, Machine, machines
+from tests.catalogue.hexapod.machines import Array, Machine, machines, rotation
 from tests.catalogue.refusals import refusal
+from tests.orthonormal import mirrored, slightly_off, too_far_off
+from tests.text.controller import OK
+from tests.text.hexapod.blocks import controller
 
 
 def test_all_over_a_realistic_workspace(machine: Machine) -> None:
@@ -157,11 +161,53 @@ def test_forward_from_starts(machine: Machine) -> None:
     assert np.array_equal(np.concatenate([position, turn.reshape(-1, 9)], axis=1), rows, equal_nan=True)
 
 
-def test_inverse(machine: Machine) -> None:
-    positions, turns = machine.poses(200, turn=110.0)
-    positions, turns = spoiled(positions, np.nan, 2e9, np.inf), np.roll(spoiled(turns, 2.0, np.nan, 1e300), 5, axis=0)
-    robot = machine.robot
-    rows, statuses = one_by_one(lambda i: robot.inverse((positions[i], turns[i])), len(positions), 6)
-    axes, status = robot.inverse_batch(positions, turns)
-    assert status.tolist() == statuses and set(statuses) == {Status.OK, Status.UNREACHABLE, Status.BAD_INPUT}
-    assert np.array_equal(axes, rows, equal_nan=True)
+CASES = {
+    (0, 0, 20, 0, 0, 0): (29.746680487073, 29.746680487073, 29.746714726168, 29.746363424795, 29.746363424795,
+        29.746714726168),
+    (2, 1, 22, 5, -3, 10): (31.759871169751, 31.881509190096, 28.585823216412, 33.902245895411, 29.170986025026,
+        32.229428923312),
+    (-3, 2, 25, -8, 6, -15): (
+        32.047073012586, 32.191238992908, 35.261838360772, 32.093952052596, 38.929389073320, 31.114809124200,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("pose", CASES)
+def test_the_lengths_that_linuxcnc_computes(pose: tuple[float, ...]) -> None:
+    robot, turn = machines()["inch"].robot, rotation(*pose[3:])
+    axes = robot.inverse((pose[:3], turn))
+    assert_allclose(axes, CASES[pose], atol=5e-12)
+    frame, configuration = robot.forward(CASES[pose])
+    assert configuration == ()
+    assert_allclose(frame.position, pose[:3], atol=2e-11)  # the published lengths have twelve decimals
+    assert_allclose(frame.rotation, turn, atol=2e-12)
+    status, (position, rows, _) = controller("inch").forward(CASES[pose])
+    assert status == OK
+    assert_allclose(position, pose[:3], atol=2e-11)
+    assert_allclose(rows, turn, atol=2e-12)
+
+
+def test_the_catalogue_knows_it() -> None:
+    """The hexapod is in the catalogue, with three rotations and a square Jacobian."""
+    assert softkin.catalogue()["Kin_Hexapod"] is Hexapod
+    assert machines()["nominal"].robot.orientation_image().freedom == "three"
+    assert np.shape(machines()["nominal"].robot.jacobian((650.0,) * 6)) == (6, 6)
+
+
+def test_a_start_is_repaired_too(machine: Machine) -> None:
+    """Forward kinematics from a start in single precision ends where it ends from an exact one; a wrong start is
+    refused.
+    """
+    positions, turns = machine.poses(2, 5.0)
+    axes = machine.axes(positions[0], turns[0])
+    for matrix in list(slightly_off(turns[0]))[:3]:
+        frame, _ = machine.robot.forward(axes, (positions[0], matrix))
+        assert np.abs(np.array(frame.rotation) - turns[0]).max() < 1e-9
+        found = machine.robot.forward_batch([axes, axes], (positions[0], matrix))
+        assert (found[3] == Status.OK).all() and np.abs(found[1] - turns[0]).max() < 1e-9
+    for matrix in (*too_far_off(turns[0]), *mirrored(turns[0])):
+        assert (
+            refusal(machine.robot.forward, axes, (positions[0], matrix), says=r"columns not|right-handed")
+            is Status.BAD_INPUT
+        )
+        assert (machine.robot.forward_batch([axes], (positions[0], matrix))[3] == Status.BAD_INPUT).all()

@@ -10,8 +10,7 @@ from softkin import Hexapod
 from derive.ir.program import Call, Program
 from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
-from tests.catalogue.hexapod.machines import Machine, machines
-from tests.catalogue.hexapod.programs import bounded, found_from, search_changed, without_mode
+from tests.catalogue.hexapod.machines import Machine, bounded, found_from, machines, search_changed, without_mode
 from tests.harness.faults import StFault
 from tests.harness.library import StError
 from tests.text.hexapod.blocks import made

@@ -16,7 +16,7 @@ from softkin._scalar import root
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.loop_machines import LOOPS, LoopMachine, loop_machines_of
-from tests.catalogue.loops.crossings import Crossing, crossing_of
+from tests.catalogue.loops.test_type2 import Crossing, crossing_of
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from softkin import Frame, KinematicsError, Status
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.mounted.machines import BASE, EVERY, LATERAL, TOOL, Sample, matrices, sample_of, tools_of
 from tests.catalogue.references import held_at
-from tests.catalogue.refusals import refusal
+from tests.catalogue.refusals import refusal, status_of
 from tests.catalogue.search.arms import frame as frame_of_arm
 from tests.text.samples import tilted
 
@@ -240,7 +240,7 @@ def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
         for place in range(12):
             matrix = frame.matrix
             matrix[place // 4, place % 4] = garbage
-            alone = _status(robot, matrix, configuration, axes)
+            alone = status_of(robot.inverse, matrix, configuration, axes)
             together = robot.inverse_batch(matrix[None], None, configuration, axes)[1]
             assert together.tolist() == [alone]
             assert {s.status for s in robot.inverse_all(matrix, axes)} >= {alone} - {Status.OK}
@@ -252,14 +252,6 @@ def test_garbage_is_refused_alike(mechanism: Mechanism) -> None:
                 robot.jacobian(wrong)
             assert robot.forward_batch([wrong])[3][0] != Status.OK
             assert robot.singularity(wrong).is_singular and robot.singularity_batch([wrong])[0].all()
-
-
-def _status(robot: softkin.Mechanism, frame: object, configuration: tuple[int, ...], reference: list[float]) -> Status:
-    try:
-        robot.inverse(frame, configuration, reference)  # type: ignore[arg-type]
-    except KinematicsError as error:
-        return error.status
-    return Status.OK
 
 
 @EVERY_MECHANISM

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 import sympy as sp
-from softkin import KinematicsError, Status
+from softkin import Status
 
+from tests.catalogue.refusals import status_of
 from tests.catalogue.turning.test_home import home_slot
 from tests.catalogue.turning_machines import TurningMachine, turning_machine
 from tests.text.controller import OK, Controller
@@ -60,16 +61,8 @@ def test_at_the_end_of_a_leg_both_branches_answer_the_same(machines: tuple[Turni
     assert controller.is_singular(axes)
     outward = position - machine.closure.home_position
     for step, expected in ((-1e-4, Status.OK), (1e-4, Status.UNREACHABLE)):
-        status = _status(machine, position + step * outward, rotation, own)
+        status = status_of(machine.robot.inverse, (position + step * outward, rotation), own)
         assert status is expected
-
-
-def _status(machine: TurningMachine, position: np.ndarray, rotation: np.ndarray, own: tuple[int, ...]) -> Status:
-    try:
-        machine.robot.inverse((position, rotation), own)
-    except KinematicsError as refused:
-        return refused.status
-    return Status.OK
 
 
 @pytest.mark.slow("Hexaglide", "Planar")
@@ -85,7 +78,7 @@ def test_a_path_into_a_type_2_singularity_is_stopped_before(machines: tuple[Turn
             for angle in np.radians(np.arange(0.0, 179.0, 0.25)) * side:
                 turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]])
                 pose = (machine.closure.home_position, turn @ machine.closure.home_rotation)
-                if _status(machine, *pose, own) is not Status.OK:
+                if status_of(machine.robot.inverse, pose, own) is not Status.OK:
                     reasons.append(str(machine.robot.diagnose(pose, own)))
                     assert "rods_dependent" not in reasons[-1] or left < 0.05
                     break

@@ -9,17 +9,25 @@ from softkin import Frame
 
 from derive.description.mechanism import Mechanism
 from derive.ir.constants import ONE_TURN
-from tests.catalogue.turns.axes import FULL, MECHANISMS, REACH, Axes, TurningAxis, turning_axes
-from tests.catalogue.turns.callers import Asked, Caller, InPython, OnController
-from tests.catalogue.turns.ranges import (
+from tests.catalogue.turns.axes import (
     FEW_STEPS,
     FEW_WIDTHS,
+    FULL,
     GAP_THAT_NO_STEP_CROSSES,
+    MECHANISMS,
+    REACH,
     STEPS,
     WIDTHS,
+    Asked,
+    Axes,
+    Caller,
+    InPython,
+    OnController,
     Range,
+    TurningAxis,
     number_of,
     placed,
+    turning_axes,
 )
 
 CLOSE = 1e-7

@@ -1,4 +1,6 @@
-"""The base block, and what every block supplies to it."""
+"""The base block, inputs, and interfaces of our own, as the library has them."""
+
+from __future__ import annotations
 
 import re
 
@@ -6,6 +8,8 @@ import pytest
 
 from tests.harness import ast
 from tests.harness.contract import header
+from tests.harness.faults import StError
+from tests.harness.library import compile_st
 from tests.text.contract.blocks import CONTRACT, FILES, UNITS, blocks, library
 
 pytestmark = pytest.mark.slow
@@ -87,3 +91,85 @@ def test_the_base_tests_the_limits_that_the_reasons_name(file: str) -> None:
 
 def _axes_of(block: ast.Block) -> list[str]:
     return [name for p in block.pragmas if "'sm_kin_axes'" in p for name in p.split("'")[3].split(", ")]
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_inputs_are_documented(file: str) -> None:
+    """Every block and every input has the attributes that the configurator shows."""
+    block = blocks()[file]
+    assert any("'sm_kin_libdoc'" in p for p in block.pragmas)
+    axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
+    assert len(axes) == (file != "orientation/Softkin_Tool.st")
+    assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
+    for title in (
+        "**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Workspace**", "**Verification**",
+    ):  # fmt: skip
+        assert title in block.comment
+    for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):
+        assert given.comment and given.initial is not None
+        kind, prefix = given.type.text, given.name[0]
+        assert {"LREAL": "d", "BOOL": "x", "INT": "i"}[kind] == prefix
+        interval = [p for p in given.pragmas if "'sm_kin_param_range'" in p]
+        assert len(interval) == (kind != "BOOL")
+        for pragma in interval:
+            assert re.search(r":= '[\[\]](-inf|-?\d+) \.\. (\+inf|-?\d+)[\[\]]'\}", pragma)
+            assert "-inf" not in pragma or "']-inf" in pragma
+            assert "+inf" not in pragma or "+inf['" in pragma
+        unit = [p.split("'")[3] for p in given.pragmas if "'sm_kin_param_unit'" in p]
+        assert (
+            unit
+            or kind != "LREAL"
+            or given.name in ("dMinType2Margin", "dWarningDistance")
+            or given.name.startswith("dCoupling")
+        ), "a number"
+        if given.name.startswith(("dLinkLength", "dArmLength")):
+            assert unit == ["u"]
+
+
+def test_vendor_ranges_are_half_open() -> None:
+    block = blocks()["scara/Kin_Scara4_ZCcoupled_Type1.st"]
+    inputs = {v.name: v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables}
+    assert "{attribute 'sm_kin_param_range' := ']0 .. 800]'}" in inputs["dLinkLength1"].pragmas
+    assert "{attribute 'sm_kin_param_range' := '[-200 .. 200]'}" in inputs["dPitchZC"].pragmas
+    assert {"xCheckLimits", "dOffsetA1", "dLowerA4", "dUpperA4"} <= inputs.keys()
+
+
+def test_the_interface_has_our_own_methods() -> None:
+    """Methods alone, those of the contract, with the headers that every block has: the check of types compares them."""
+    interface = library().objects["ISoftkin"]
+    assert isinstance(interface, ast.Interface) and interface.extends == ("__SYSTEM.IQueryInterface",)
+    assert {m.name: header(m) for m in interface.methods} == {
+        name: (name, s.returns, *((p.scope, p.name, p.type) for p in s.parameters)) for name, s in CONTRACT.own.items()
+    }
+    of_axes = {"Jacobian", "AxisVelocities", "AxisAccelerations", "Margins"}
+    assert set(CONTRACT.own) == {"Diagnose", "InitializeReason", *of_axes, *(f"{name}From" for name in of_axes)}
+
+
+SCARA = "scara/Softkin_Scara2_Z.st"
+INTERFACE, BASE = "softkin/ISoftkin.st", "softkin/Softkin_Kinematics.st"
+WRONG_HEADERS = {
+    "a method more": (
+        INTERFACE, "METHOD InitializeReason", "METHOD Explain : BOOL\nEND_METHOD\n\nMETHOD InitializeReason",
+        "Softkin_Scara2_Z lacks the method Explain of ISoftkin",
+    ),
+    "another access": (BASE, "METHOD PUBLIC Margins", "METHOD PROTECTED Margins", "ISoftkin.Margins must be public"),
+    "another name": (INTERFACE, "  iTurn : INT;", "  iPeriod : INT;", "the header of Diagnose is not that of ISoftkin"),
+    "another type": (INTERFACE, "aMargins : ARRAY[0..7]", "aMargins : ARRAY[0..8]", "the header of Margins"),
+    "another result": (INTERFACE, "InitializeReason : STRING(255)", "InitializeReason : STRING(80)", "the header of"),
+    "another order": (
+        INTERFACE, "  aTwist : ARRAY[0..5] OF LREAL;\n  a : TRAFO.AXISPOS_REF;",
+        "  a : TRAFO.AXISPOS_REF;\n  aTwist : ARRAY[0..5] OF LREAL;", "the header of AxisVelocities",
+    ),
+    "another base": (INTERFACE, " EXTENDS __SYSTEM.IQueryInterface", "", "extends nothing that a query finds"),
+    "a base that is not there": (INTERFACE, "__SYSTEM.IQueryInterface", "__SYSTEM.IQuery", "unknown interface"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG_HEADERS)
+def test_another_header_is_refused(case: str) -> None:
+    """A block whose method is not that of the interface does not compile."""
+    file, old, new, message = WRONG_HEADERS[case]
+    texts = {name: text for name, text in FILES.items() if name.startswith("softkin/") or name == SCARA}
+    assert old in texts[file]
+    with pytest.raises(StError, match=message):
+        compile_st({**texts, file: texts[file].replace(old, new)})

@@ -1,10 +1,12 @@
-"""Every block implements the interfaces of SoftMotion that its kind needs, method for method, laid out as they are."""
+"""The interfaces of the library, and who writes what."""
 
+import dataclasses
 import re
 from collections.abc import Iterator
 
 import pytest
 
+from tests.harness import ast
 from tests.harness.contract import INTERFACES, plain
 from tests.text.contract.blocks import CONTRACT, FILES, UNITS, blocks, library
 
@@ -16,7 +18,6 @@ ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientatio
 
 
 def test_every_mechanism_has_its_block() -> None:
-    """Every mechanism has a function block."""
     assert len(blocks()) == len(UNITS) >= 20
 
 
@@ -91,7 +92,6 @@ def test_the_kinds_of_the_vendors_parts() -> None:
 
 
 def test_two_blocks_implement_everything() -> None:
-    """Two blocks together implement every interface of the contract."""
     files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
     names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements[:-1]]
     assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
@@ -99,7 +99,6 @@ def test_two_blocks_implement_everything() -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
-    """Exactly the blocks with turns implement the interface for the limits of drives."""
     block = blocks()[file]
     has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
     assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
@@ -140,10 +139,86 @@ def test_names_of_objects_are_unique_ignoring_case() -> None:
 
 @pytest.mark.parametrize("file", UNITS)
 def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
-    """No two names inside a block are the same in upper or lower case."""
     block = blocks()[file]
     members = [v.name for s in block.sections for v in s.variables] + [m.name for m in block.methods] + ["NumAxes"]
     for method in block.methods:
         own = [v.name for s in method.sections for v in s.variables]
         names = [name.lower() for name in (*members, *own)]
         assert len(names) == len(set(names)), f"{file}: {method.name}"
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_only_initialize_writes_the_instance(file: str) -> None:
+    """What Initialize calls writes the variables of a block and what the base keeps for it, and nothing else does."""
+    block, base = blocks()[file], library().objects["Softkin_Kinematics"]
+    members = {v.name.lower() for owner in (block, base) for s in owner.sections for v in s.variables}
+    for method in block.methods:
+        written = members & set(_written(method.body))
+        if method.name != "ReadInputs":
+            assert not written, f"{file}: {method.name}"
+        else:
+            assert not [a for a in _members_of_axes(method.body) if a.startswith(("drive", "lowest", "highest"))], file
+        called = {call.lower() for call in _called(method.body)}
+        assert "readinputs" not in called, file
+        assert method.name == "ReadInputs" or not called & {name.lower() for name in CONTRACT.offered}, file
+
+
+def test_the_base_alone_reads_inputs_and_writes_limits() -> None:
+    """Initialize alone calls ReadInputs, and no other method what that calls; AxisSettings writes by Softkin_SetAxis,
+    whose last statements write.
+    """
+    base, setter = library().objects["Softkin_Kinematics"], library().objects["Softkin_SetAxis"]
+    members = {v.name.lower() for s in base.sections for v in s.variables}
+    for method in base.methods:
+        calls = set(_called(method.body))
+        assert ("ReadInputs" in calls) == (method.name == "Initialize")
+        assert ("Softkin_SetAxis" in calls) == (method.name in ("Initialize", "AxisSettings"))
+        assert not calls & set(CONTRACT.offered) or method.name in CONTRACT.offered, method.name
+        written = members & set(_written(method.body))
+        assert written <= {"Check": {"refusal"}, "ReadLimits": {"axes"}}.get(method.name, set()) or (
+            method.name == "Initialize"
+        ), method.name
+    firsts = [at for at, statement in enumerate(setter.body) if "axis" in _written((statement,))]
+    assert firsts and firsts == list(range(firsts[0], len(setter.body) - 1))
+
+
+def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The variables that statements assign, however deep."""
+    for statement in body:
+        if isinstance(statement, ast.Assign):
+            target = statement.target
+            while isinstance(target, ast.Member | ast.Index):
+                target = target.object
+            if isinstance(target, ast.Name):
+                yield target.text.lower()
+        elif isinstance(statement, ast.If | ast.Case):
+            for branch in statement.branches:
+                yield from _written(branch.body)
+            yield from _written(statement.otherwise)
+        elif isinstance(statement, ast.For | ast.While):
+            yield from _written(statement.body)
+
+
+def _called(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The functions and methods that statements call by their plain names, however deep."""
+    for found in _nodes(body):
+        if isinstance(found, ast.Call) and isinstance(found.function, ast.Name):
+            yield found.function.text
+
+
+def _members_of_axes(body: tuple[ast.Statement, ...]) -> Iterator[str]:
+    """The members of the structures of axes that statements assign."""
+    for found in _nodes(body):
+        if isinstance(found, ast.Assign) and isinstance(found.target, ast.Member):
+            yield found.target.name
+
+
+def _nodes(found: object) -> Iterator[object]:
+    """A node of the syntax tree and all inside it; of a tuple, those of its entries."""
+    if isinstance(found, tuple):
+        for one in found:
+            yield from _nodes(one)
+    elif dataclasses.is_dataclass(found):
+        yield found
+        for field in dataclasses.fields(found):
+            yield from _nodes(getattr(found, field.name))

@@ -194,7 +194,6 @@ def test_the_number_of_axes(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_position_of_a_frame_is_not_read(mechanism: Mechanism) -> None:
-    """The inverse of an orientation kinematics does not read the position of the frame."""
     for pair in orientation_pairs_of(mechanism):
         sample = pair.regular[0]
         (_, rotation), configuration = pair.robot.forward(sample.axes)

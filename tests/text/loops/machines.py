@@ -1,4 +1,4 @@
-"""Machines of every mechanism with rods, as a block and in Python, and poses of them."""
+"""Machines of every mechanism with rods, as a block and in Python, and what every method of them must answer."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -10,13 +10,14 @@ import softkin
 from numpy.random import Generator
 from softkin import KinematicsError, Status
 
-from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.description.mechanism import Mechanism, Parameter, Role, Turning
 from derive.kinematics.parameters import machine_parameters
 from tests.mechanisms import catalogue
 from tests.random_axes import random_axes
 from tests.text.both import Both
-from tests.text.controller import OK, Controller
-from tests.text.samples import Sample, tilted
+from tests.text.comparisons import COMPARISONS as SERIAL
+from tests.text.controller import OK, Controller, assert_same
+from tests.text.samples import HALF_TURN, NO_TURN, Sample, tilted
 from tests.text.units import compiled
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods)
@@ -148,3 +149,18 @@ def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
         offset=tuple((rng.uniform(-0.05, 0.05, 3) * machine.reach).tolist()),
         data=tuple(rng.integers(0, 256, len(machine.robot.CONFIGURATION)).tolist()),
     )
+
+
+def image_with_orientation(loop: Loop, sample: Sample) -> None:
+    """All rotations can be had: a space of the one that is asked for. One that turns about z has its headings."""
+    if loop.mechanism.task.turning is Turning.ABOUT_Z:
+        SERIAL["GetFlangeOrientationImageWithOri"](loop, sample)  # type: ignore[arg-type]
+        return
+    for rows in (sample.rotation, NO_TURN, HALF_TURN):
+        status, (dof, zero, *_) = loop.controller.image_with_orientation(rows)
+        assert (status, dof) == (OK, "zero")
+        assert_same(zero, rows, loop)
+
+
+COMPARISONS = SERIAL | {"GetFlangeOrientationImageWithOri": image_with_orientation}
+"""By the name of the method."""

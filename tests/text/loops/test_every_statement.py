@@ -18,12 +18,10 @@ from tests.text import (
     test_configuration_blocks,
     test_garbage,
     test_initialise,
-    test_not_initialised,
 )
 from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
 from tests.text.loops import test_branches
-from tests.text.loops.answers import COMPARISONS
-from tests.text.loops.machines import LOOPS, Loop, loop_of, loops_of
+from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loop_of, loops_of
 from tests.text.loops.test_branches import compare
 from tests.text.other_turns import check_other_turns
 from tests.text.reasons import compare_reason, provoke
@@ -72,7 +70,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     """What the comparisons leave out: refusals, and the other blocks."""
     test_blocks_alone.test_the_number_of_axes(loops)
     test_blocks_alone.test_calling_the_block_itself_does_nothing(loops)
-    test_not_initialised.test_no_method_works(loops, test_not_initialised.fresh)
+    test_initialise.test_no_method_works(loops, test_initialise.fresh)
     test_initialise.test_every_parameter_is_checked(loops[-1:])
     test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
     test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)

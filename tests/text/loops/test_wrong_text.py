@@ -9,8 +9,7 @@ from derive.description.mechanism import Mechanism
 from tests.harness.library import Library, compile_st
 from tests.text.breakage import Break, texts
 from tests.text.controller import OK, Controller
-from tests.text.loops.answers import COMPARISONS
-from tests.text.loops.machines import LOOPS, Loop, loops_of
+from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loops_of
 from tests.text.units import compiled_text, file_of, text_of
 
 pytestmark = pytest.mark.slow

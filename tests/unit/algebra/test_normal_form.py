@@ -1,9 +1,9 @@
-"""The normal form: the same function, reduced modulo sin^2 + cos^2 = 1 and s^2 = 1."""
+"""The normal form, and its ring: the same function, reduced as SymPy's own expansion is."""
 
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from derive.algebra.normal_form import (
@@ -15,6 +15,7 @@ from derive.algebra.normal_form import (
     sine,
     split_known,
 )
+from derive.algebra.rings import is_rational, reduced_in_ring
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import real
 from tests.unit.solver.execution import ANGLES, NUMBERS, at, few
@@ -23,6 +24,7 @@ A1, A2, A3 = ANGLE_NAMES = tuple(real(f"a{k}") for k in (1, 2, 3))
 S, T = (sp.Symbol(n, real=True, nonzero=True) for n in "st")
 L = sp.Symbol("link", positive=True)
 X = real("x")
+A1, A2 = map(real, "a1 a2".split())
 
 EXPRESSIONS = {
     "one angle": L * sp.cos(A1) - X,
@@ -90,7 +92,6 @@ def test_signs_are_only_signs_where_they_are_named() -> None:
 
 
 def test_pi_is_half_a_turn_in_degrees() -> None:
-    """Pi becomes 180 degrees."""
     assert polynomial(X * A1 / (2 * sp.pi), (A1,), ()) == X * A1 / (360 * DEGREE)
 
 
@@ -118,3 +119,47 @@ def test_split_known() -> None:
 def test_what_deserves_a_name(expression: sp.Expr, compound: bool) -> None:
     """A sum or product gets a name, and a single symbol with a factor does not."""
     assert is_compound(expression) is compound
+
+
+SIGN, FLAG = sp.Symbol("sign", real=True, nonzero=True), sp.Symbol("flag", real=True)
+SYMBOLS = (sine(A1), cosine(A1), sine(A2), cosine(A2), real("link"), SIGN, FLAG)
+SQUARES = {sine(a): 1 - cosine(a) ** 2 for a in (A1, A2)} | {SIGN: sp.Integer(1), FLAG: FLAG}
+LEAVES = st.sampled_from(SYMBOLS) | st.fractions(-3, 3, max_denominator=4).map(
+    lambda f: sp.Rational(f.numerator, f.denominator)
+)
+TREES = st.recursive(
+    LEAVES,
+    lambda inner: (
+        st.tuples(inner, inner).map(lambda p: p[0] + p[1])
+        | st.tuples(inner, inner).map(lambda p: p[0] * p[1])
+        | st.tuples(inner, st.integers(1, 3)).map(lambda p: p[0] ** p[1])
+    ),
+    max_leaves=10,
+)
+
+
+def slowly(expression: sp.Expr) -> sp.Expr:
+    """Expanded term by term, each square of a symbol replaced by what it is."""
+    while True:
+        powers = {
+            p: SQUARES[p.base] ** (p.exp // 2) * p.base ** (p.exp % 2)
+            for p in sp.expand(expression).atoms(sp.Pow)
+            if p.base in SQUARES
+        }
+        expression, before = sp.expand(sp.expand(expression).xreplace(powers)), expression
+        if expression == before:
+            return expression
+
+
+@settings(deadline=None)
+@given(TREES)
+def test_a_ring_expands_as_sympy_does(expression: sp.Expr) -> None:
+    assert is_rational(expression)
+    assert reduced_in_ring(expression, SQUARES) == slowly(expression)
+    assert reduce_units(expression, (A1, A2), (SIGN, FLAG)) == slowly(expression)
+
+
+def test_what_is_no_polynomial_is_left_to_sympy() -> None:
+    x = real("x")
+    for other in (sp.sqrt(2) * x, 1 / x, sp.sin(x), x**0.5, sp.Float(0.1) * x, sp.pi * x, x**x):
+        assert not is_rational(other)

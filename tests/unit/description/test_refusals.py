@@ -232,7 +232,6 @@ def test_what_the_offset_interface_spoils_can_be_built_without() -> None:
 
 
 def test_a_branch_has_two_names_and_both_signs() -> None:
-    """A branch without two names, or without both signs, is refused."""
     for names in ({"right": 1}, {"right": 1, "left": 1}, {"right": 1, "left": -1, "up": 1}, {"right": 2, "left": -2}):
         with pytest.raises(DescriptionError, match="branch 'elbow' needs two names with the signs \\+1 and -1"):
             branch("elbow", sin(A2), **names)

@@ -70,7 +70,6 @@ def test_angles_are_as_wide_as_their_parameters(name: str, angles: set[str]) -> 
 
 
 def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
-    """Every rod is drawn with the length that it has."""
     scene, mechanism = one.drawing.scene, one.mechanism
     bars = mechanism.bars or mechanism.rods
     rods = [s for s in scene.segments if s.body is Body.ROD]
@@ -84,7 +83,6 @@ def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
 
 
 def test_the_bodies_of_a_chain_reach_from_the_base_to_the_tool(chain: Drawn) -> None:
-    """The bodies of a chain are connected from the base to the tool."""
     scene = chain.drawing.scene
     origin = (0.0, 0.0, 0.0)
     ends = [(origin, origin), *((s.start, s.end) for s in scene.segments)]
@@ -155,7 +153,6 @@ def test_arrows_of_a_loop_point_where_its_bars_go(loop: Drawn) -> None:
 
 
 def test_every_axis_is_drawn(one: Drawn) -> None:
-    """Every axis is drawn with its name."""
     scene = one.drawing.scene
     labels = {symbol for item in (*scene.turns, *scene.slides) for symbol in item.label.free_symbols}
     assert {axis_name(joint) for joint in one.mechanism.joints} <= labels
@@ -182,7 +179,6 @@ def _skeleton(scene: Scene) -> np.ndarray:
 
 
 def test_rails_that_begin_in_one_point_are_stacked() -> None:
-    """Rails that begin at one point are drawn one on the other."""
     scene = drawn("Kin_Polar_Z").drawing.scene
     (_, end), (start, _) = rails(scene).values()
     assert start == pytest.approx(end)

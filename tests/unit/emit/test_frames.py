@@ -12,20 +12,13 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from softkin import Frame, KinematicsError, Status, orthonormalize
 
+from tests.orthonormal import about
+
 Array = NDArray[np.float64]
 ANGLES = st.floats(-720.0, 720.0)
 NUMBERS = st.floats(-1e3, 1e3)
 PLACES = st.tuples(NUMBERS, NUMBERS, NUMBERS)
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-def about(axis: int, degrees: float) -> Array:
-    """A turn about a coordinate axis, by cosine and sine."""
-    found, (i, j) = np.eye(3), ((axis + 1) % 3, (axis + 2) % 3)
-    found[i, i] = found[j, j] = math.cos(math.radians(degrees))
-    found[j, i] = math.sin(math.radians(degrees))
-    found[i, j] = -found[j, i]
-    return found
 
 
 def exponential(quaternion: tuple[float, ...]) -> Array:

@@ -1,6 +1,7 @@
-"""Printed expressions and programs, run, against the reference semantics of what they print."""
+"""Printed expressions, long statements and whole programs: run, against the reference semantics; nothing is lost."""
 
 import ast
+from time import process_time
 
 import numpy as np
 import pytest
@@ -10,15 +11,21 @@ from hypothesis import strategies as st
 from softkin import _array, _scalar
 from softkin._types import Status as Code
 
+from derive.command.catalogue import OUTPUT
+from derive.emit.c.printer import laid_out as in_c
+from derive.emit.javascript.printer import laid_out as in_javascript
 from derive.emit.python.arrays import array_body
 from derive.emit.python.layout import WIDTH, UnformattedError, assigned, formatted
 from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
 from derive.emit.python.program import Argument, Method, scalar_body
+from derive.emit.st.layout import wrapped
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate, run
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
 from derive.ir.program import Let, Output, Program, Require, Status
 from derive.ir.symbols import real
+from derive.pipeline import LANGUAGES, WRITTEN, derive_one, files_of, languages
+from tests.mechanisms import named
 
 NAMES = ("first", "second", "third")
 LEAVES = st.sampled_from(
@@ -109,7 +116,6 @@ def test_what_is_no_python_is_not_laid_out() -> None:
 
 @given(names=st.lists(st.from_regex("[a-z_]{1,40}", fullmatch=True), unique=True, max_size=20))
 def test_values_are_assigned_in_lines_that_fit(names: list[str]) -> None:
-    """Values are assigned in their order, in lines within the width."""
     lines = assigned({name: f"k.{name}" for name in names})
     pairs = [pair for line in lines for pair in zip(*(side.split(", ") for side in line.split(" = ")), strict=True)]
     assert pairs == [(name, f"k.{name}") for name in names]
@@ -164,3 +170,48 @@ def test_programs_mean_the_same_in_print(x: float, y: float) -> None:
         return
     np.testing.assert_allclose(scalar, [outputs["size"][0], outputs["turned"][0]], rtol=1e-12)
     np.testing.assert_allclose([a[0] for a in array], scalar, rtol=1e-12)
+
+
+LAID_OUT = {"C": lambda s: in_c([s]), "JavaScript": lambda s: in_javascript([s]), "Structured Text": wrapped}
+
+
+def statement(terms: int) -> str:
+    """A sum of products, and calls with lists."""
+    return "wide = " + " + ".join(f"first_{i}*(second_{i} - f(third_{i}, 2.0*{i}.0))" for i in range(terms)) + ";"
+
+
+@pytest.mark.parametrize("language", LAID_OUT)
+def test_a_long_statement_takes_time_in_proportion(language: str) -> None:
+    """With a scan of the whole rest for every line, these take minutes."""
+    whole = statement(4000)
+    start = process_time()
+    lines = LAID_OUT[language](whole)
+    assert process_time() - start < 8.0
+    assert "".join(lines).replace(" ", "") == whole.replace(" ", "")
+    assert max(map(len, lines)) <= 120 and len(lines) < len(whole) / 50
+
+
+def test_where_a_statement_breaks() -> None:
+    """Behind a comma before an operator, before an operator before a factor; behind `=` where nothing else fits."""
+    assert wrapped("x := Clamp(first*second - third, fourth + fifth*sixth);", 34) == [
+        "x := Clamp(first*second - third,", "    fourth + fifth*sixth);",
+    ]  # fmt: skip
+    assert wrapped("x := first + second*third*fourth;", 24) == ["x := first", "    + second*third", "    *fourth;"]
+    assert in_c([f"const double x = {'a' * 100};"]) == ["const double x =", f"    {'a' * 100};"]
+    assert in_c([f'say("a, b - {"c" * 90}", first, second, third);'])[0].endswith('",')
+
+
+NAME = "Kin_Scara2_Z"
+
+
+def test_what_is_written_is_what_is_committed() -> None:
+    """Its files are those of `generated/`, byte for byte, and the languages that are not committed write it as well."""
+    built = derive_one(named(NAME))
+    assert built.measured and not built.undrawn
+    files = files_of([built], languages(None, wanted=LANGUAGES))
+    own = {path: data for path, data in files.items() if "scara2_z" in path.lower()}
+    assert {path.split("/")[0] for path in own} == set(LANGUAGES)
+    committed = [path for path in own if path.startswith(WRITTEN)]
+    assert len(committed) >= 8
+    for path in committed:
+        assert own[path] == (OUTPUT / path).read_bytes(), path

@@ -1,28 +1,25 @@
-"""What becomes of a rotation that a caller gives: in the reference semantics, on plain numbers, and on arrays."""
+"""What becomes of a rotation that a caller gives, in every kind of Python; arc tangents of several poses at a time."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mpmath import mp
 from softkin import Diagnosis, Status
 from softkin._array_rotation import made_rotations
 from softkin._rotation import in_words, made_rotation
 
+from derive.emit.native import coefficients, horner
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.interpret import run
 from derive.ir.symbols import ROTATION_ENTRIES
 from derive.report.reasons import rotation_texts
-from tests.orthonormal import Array, error, mirrored, repaired, single, slightly_off, too_far_off
+from tests.orthonormal import Array, error, mirrored, random_rotations, repaired, single, slightly_off, too_far_off
 
 SEEDS = st.integers(0, 2**32 - 1)
 GARBAGE = (np.nan, np.inf, -np.inf, 1e300, -1e300, 1.1e9, 1e9, 0.0)
 NUMBERS, LENGTH, ANGLE, HANDED = range(4)
 """The places of the reasons."""
-
-
-def random_rotation(seed: int) -> Array:
-    matrix, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    return np.asarray(matrix * np.linalg.det(matrix))
 
 
 def rows(matrix: Array) -> tuple[tuple[float, ...], ...]:
@@ -50,7 +47,7 @@ def in_the_reference(matrices: Array) -> tuple[Array, list[str]]:
 @given(seed=SEEDS)
 def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
     """The repair leaves a rotation that is exact to 1e-12 unchanged."""
-    rotation = random_rotation(seed)
+    rotation = random_rotations(1, seed)[0]
     matrices = np.array(
         [rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])]
     )
@@ -65,7 +62,7 @@ def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
 @given(seed=SEEDS)
 def test_what_is_nearly_a_rotation_is_made_one(seed: int) -> None:
     """In all three as by NumPy; its z keeps its direction, and made again it stays as it is."""
-    matrices = np.array(list(slightly_off(random_rotation(seed))))
+    matrices = np.array(list(slightly_off(random_rotations(1, seed)[0])))
     batch, statuses = on_arrays(matrices)
     references, outcomes = in_the_reference(matrices)
     assert (statuses == Status.OK).all() and set(outcomes) == {"OK"}
@@ -83,7 +80,7 @@ def test_what_is_nearly_a_rotation_is_made_one(seed: int) -> None:
 @given(seed=SEEDS, size=st.floats(1.1e-12, 0.9e-4))
 def test_any_error_in_between(seed: int, size: float) -> None:
     """Noise in all entries: not farther from what was given than twice the error, which is as near as it can be."""
-    rotation = random_rotation(seed)
+    rotation = random_rotations(1, seed)[0]
     noise = np.random.default_rng(seed + 1).uniform(-1.0, 1.0, (3, 3))
     matrix = rotation + noise * size / error(rotation + 1e-4 * noise) * 1e-4
     if 1e-12 < error(matrix) <= 1e-4:
@@ -96,8 +93,7 @@ def test_any_error_in_between(seed: int, size: float) -> None:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int) -> None:
-    """A matrix that is no rotation is refused with the reason and the amount of its error."""
-    rotation = random_rotation(seed)
+    rotation = random_rotations(1, seed)[0]
     texts = rotation_texts()
     wrong = [(m, None) for m in too_far_off(rotation)] + [(m, HANDED) for m in mirrored(rotation)]
     wrong += [
@@ -131,7 +127,7 @@ def test_the_reason_in_words() -> None:
 @given(seed=SEEDS, place=st.integers(0, 8), value=st.sampled_from(GARBAGE) | st.floats())
 def test_garbage_never_raises_and_harms_no_neighbour(seed: int, place: int, value: float) -> None:
     """A matrix with garbage is refused without an exception, and the other rows of its batch are not affected."""
-    rotation = random_rotation(seed)
+    rotation = random_rotations(1, seed)[0]
     matrix = rotation.copy()
     matrix.flat[place] = value
     is_one = bool(np.isfinite(value)) and abs(value) < 10 and error(matrix) <= 1e-4
@@ -145,6 +141,29 @@ def test_garbage_never_raises_and_harms_no_neighbour(seed: int, place: int, valu
 
 def test_one_rotation_for_all_rows() -> None:
     """What is the same in all rows may be a number."""
-    found, statuses = made_rotations(rows(single(random_rotation(1))))
+    found, statuses = made_rotations(rows(single(random_rotations(1, 1)[0])))
     assert statuses.shape == () and statuses == Status.OK
-    np.testing.assert_allclose(np.array(found, dtype=float), repaired(single(random_rotation(1))), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        np.array(found, dtype=float), repaired(single(random_rotations(1, 1)[0])), rtol=0, atol=1e-15
+    )
+
+
+OCTANT = np.sqrt(2.0) - 1.0
+LAST_DIGIT = 2.0**-52
+
+
+def test_the_last_digit() -> None:
+    """From tiny angles to 22.5 degrees the polynomial misses by less than one unit of the last digit."""
+    context = mp.clone()
+    context.dps = 40
+    even, odd = horner("zz")
+    t = np.concatenate([np.linspace(1e-9, OCTANT, 2000), np.geomspace(1e-300, OCTANT, 500)])
+    z = t * t
+    p = eval(even, {"zz": z * z}) + z * eval(odd, {"zz": z * z})
+    worst = max(abs(float(context.atan(a) - v)) / a for a, v in zip(t, t + t * z * p, strict=True))
+    assert worst < LAST_DIGIT
+
+
+def test_the_series() -> None:
+    """The first coefficients are nearly those of the series: -1/3, 1/5, -1/7."""
+    assert np.allclose(coefficients()[:3], [-1 / 3, 1 / 5, -1 / 7], rtol=0, atol=1e-9)

@@ -172,7 +172,6 @@ def test_slots_that_are_done_keep_their_state() -> None:
 
 @given(value=DEGREES, centre=DEGREES)
 def test_turns_are_chosen_by_slot_and_row(value: float, centre: float) -> None:
-    """The nearest period is chosen for each slot and each row."""
     values, centres = np.array([[value], [value + 400.0]]), np.array([centre, centre - 800.0, 0.0])
     found = _array.nearest_period(values, centres)
     right = [[_scalar.nearest_period(v, c) for c in centres.tolist()] for v in values[:, 0].tolist()]

@@ -21,7 +21,6 @@ def test_a_comment_beside_a_declaration_is_whole_and_fits(length: int, comment: 
 
 
 def test_a_long_declaration_still_has_its_comment() -> None:
-    """A comment beside a very long declaration is complete."""
     lines = beside("d" * 200, "a length that no machine can be without")
     assert " ".join(line.partition("// ")[2] for line in lines) == "a length that no machine can be without"
 

@@ -1,10 +1,11 @@
-"""The one form of a chain: it is the same machine, and other words for it have the same form."""
+"""The one form of a chain and of a closed loop: the same machine, and other words for it have the same form."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import sympy as sp
+from sympy import Expr, cos, pi, sin
 
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
@@ -13,7 +14,10 @@ from derive.form.machine import in_form
 from derive.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.geometry.frames import LETTERS
 from derive.ir.constants import DEGREE
+from derive.ir.symbols import COORDINATE_NAMES, real
 from derive.kinematics.build import build
+from derive.mechanism import Task, X, Y, Z, distance, length, rod, rotary, signed_length
+from derive.vectors import vector
 from tests.importing.kinematics import elementary
 from tests.mechanisms import catalogue
 from tests.unit.form.chains import A1, A2, A3, CHAINS, LINK, P1, SIX
@@ -147,3 +151,81 @@ def test_lengths_of_a_right_angled_machine_stay_exact(kind: str) -> None:
     """Whatever their digits: no length is rounded, or becomes a decimal."""
     chain, words = EXACT[kind]
     assert formed(chain) == words
+
+
+BASE, PLATE = length("base", "base", nominal=180.0), length("plate", "plate", nominal=40.0)
+ARM, ROD = length("arm", "arm", nominal=210.0), length("rod", "rod", nominal=480.0)
+GROUND, LEFT, RIGHT = (length(n, n, nominal=v) for n, v in (("ground", 130.0), ("left", 90.0), ("right", 95.0)))
+NEAR, FAR = length("near", "near", nominal=170.0), length("far", "far", nominal=185.0)
+PEN, SIDE = distance("pen", "pin to pen", nominal=50.0), signed_length("side", "pin to pen", nominal=40.0)
+AXES = tuple(rotary(f"A{k}", "arm") for k in (1, 2, 3))
+
+
+def delta(*degrees: int) -> Mechanism:
+    """A delta whose motors stand at these angles, in degrees."""
+
+    def legs(axis: Expr, at: Expr) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
+        reach = BASE + ARM * cos(axis)
+        return vector(reach * cos(at), reach * sin(at), -ARM * sin(axis)), vector(
+            X + PLATE * cos(at), Y + PLATE * sin(at), Z
+        )
+
+    ends = [legs(axis, degree * pi / 180) for axis, degree in zip(AXES, degrees, strict=True)]
+    rods = tuple(rod(str(k), *end, ROD) for k, end in enumerate(ends, 1))
+    return Mechanism("Own", AXES, Task("xyz"), parameters=(BASE, PLATE, ARM, ROD), rods=rods)
+
+
+def pen_arm(beyond: Expr, *parameters: object) -> Mechanism:
+    """A five-bar whose pen stands on the left rod, beyond the pin that both share."""
+    first, second = (rotary(n, "crank", nominal=v) for n, v in (("A1", 125.0), ("A2", 55.0)))
+    knees = (LEFT * cos(first), LEFT * sin(first), 0), (GROUND + RIGHT * cos(second), RIGHT * sin(second), 0)
+    pin = tuple(k + NEAR / (NEAR + beyond) * (p - k) for k, p in zip(knees[0], (X, Y, 0), strict=True))
+    rods = rod("1", knees[0], (X, Y, 0), NEAR + beyond), rod("2", knees[1], pin, FAR)
+    parameters = (GROUND, LEFT, RIGHT, NEAR, FAR, *parameters)
+    return Mechanism("Own", (first, second), Task("xy"), parameters=parameters, rods=rods)  # type: ignore[arg-type]
+
+
+LOOPS = {
+    "motors at odd angles": delta(0, 130, 251),
+    "motors that share an angle": delta(10, 100, 235),
+    "the pen on an extension": pen_arm(PEN, PEN),
+    "the pen on either side of the pin": pen_arm(SIDE, SIDE),
+}
+
+
+@pytest.mark.long("motors")
+@pytest.mark.quick
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_loop_is_the_same_machine(name: str) -> None:
+    """At random poses, joints and parameters every equation is the stated one, times a value that no joint changes."""
+    stated, form = LOOPS[name], in_form(LOOPS[name])
+    fixed = {p.symbol: p.nominal for p in form.parameters if p.fixed is not None} | {DEGREE: np.pi / 180.0}
+    rng = np.random.default_rng(3)
+    given = {}
+    for own, other in zip(form.parameters, stated.parameters, strict=False):
+        given[own.symbol] = given[other.symbol] = own.nominal * rng.uniform(0.9, 1.1)
+    ratios = []
+    for _ in range(3):
+        pose = {s: rng.uniform(-300.0, 300.0) for s in map(real, COORDINATE_NAMES)} | {
+            j.symbol: rng.uniform(-3.0, 3.0) for j in AXES
+        }
+        pairs = zip(form.equations, stated.equations, strict=True)
+        ratios.append([float((own / other).xreplace(given | fixed | pose)) for own, other in pairs])
+    assert np.ptp(ratios, axis=0).max() < 1e-9 and np.min(ratios) > 0.0
+
+
+@pytest.mark.long
+@pytest.mark.quick
+def test_names_of_angles() -> None:
+    """10 degrees and 100 degrees have one name, and so have 35 and 235; 60 degrees are roots, and need none."""
+    named = [p.name for p in in_form(LOOPS["motors that share an angle"]).parameters if p.fixed is not None]
+    assert named == ["angle_10_deg", "angle_35_deg"]
+    assert all(p.fixed is None for p in in_form(delta(0, 120, 240)).parameters)
+    assert in_form(LOOPS["the pen on an extension"]).bars == LOOPS["the pen on an extension"].rods
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LOOPS)
+def test_it_derives(name: str) -> None:
+    """The rods of the form are spheres, or circles, about known points."""
+    assert build(validate(LOOPS[name])).branches

@@ -45,7 +45,6 @@ def other(mechanism: Mechanism, number: int) -> Mechanism:
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_other_words_have_the_same_form(name: str) -> None:
-    """Other wordings describe the same machine, and have the same form."""
     mechanism, form = MACHINES[name], in_form(MACHINES[name])
     rng = np.random.default_rng(3)
     values = {q.symbol: float(rng.uniform(0.5, 1.5)) for q in (*mechanism.parameters, *mechanism.joints)}

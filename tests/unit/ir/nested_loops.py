@@ -5,7 +5,6 @@ find_mean   the arithmetic-geometric mean: each pass needs a root, until both nu
 settle      the mean of a number and a second one, again and again, until it is the second one
 """
 
-import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -42,6 +41,7 @@ from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import count, real
 from derive.lowering.passes import lowered
 from derive.report.reasons import Reasons
+from tests import outside
 from tests.c.programs import compile_in, written
 from tests.harness.library import compile_st
 from tests.javascript.node import run as run_in_node
@@ -176,8 +176,7 @@ def in_c(name: str) -> Answers:
     folder = written({**c_package.files([]), "nested.c": "\n".join(text)})
     compile_in(folder, "-Wno-unused-function", "nested.c", "softkin.c", "-lm", "-o", "nested")
     rows = "\n".join(f"{a!r} {b!r}" for a, b in ROWS)
-    said = subprocess.run([folder / "nested"], input=rows, capture_output=True, text=True, check=True).stdout
-    answers = [line.split() for line in said.splitlines()]
+    answers = [line.split() for line in outside.output_of([folder / "nested"], input=rows).splitlines()]
     return [(softkin.Status(int(status)).name, list(map(float, values))) for status, *values in answers]
 
 
@@ -185,9 +184,7 @@ def in_javascript(name: str, folder: Path) -> Answers:
     functions = [JavaScriptFunction(entry) for entry in entries()]
     lines = [line for f in functions for line in javascript_lines(f, refusals_of(Reasons({})))]
     called = next(f.name for f in functions if f.program.name == name)
-    for path, text in javascript_package.files([]).items():
-        (folder / path).parent.mkdir(exist_ok=True, parents=True)
-        (folder / path).write_text(text, encoding="utf-8")
+    outside.written(javascript_package.files([]), folder)
     head = 'import { Refusal, Status, refuse } from "./softkin/softkin.js";'
     (folder / "nested.js").write_text("\n".join([head, *lines, f"export {{ {called}, Refusal }};"]), encoding="utf-8")
     asked = f"{list(map(list, ROWS))}.map((row) => module.{called}({CONSTANTS}, row))"

@@ -84,7 +84,6 @@ X, Y, Z, SWAP, IS_SWAPPED = (*map(real, ("x", "y", "z", "swap_xy")), flag("swap_
     ],
 )  # fmt: skip
 def test_what_calculates_with_a_flag_becomes_a_choice(value: sp.Basic, expected: sp.Basic) -> None:
-    """Arithmetic with a flag becomes a choice by that flag."""
     mechanism: Mechanism = named("MC_KIN_TYPE_12_XY")
     body = (Let(flag("f") if is_condition(value) else real("v"), value),)
     program = Program("p", tuple(sorted(value.free_symbols, key=str)), body, ())

@@ -1,17 +1,28 @@
-"""The limits of an axis and of its drive together: against plain comparisons of numbers, and against `setup` alone."""
+"""Programs of a machine: limits and rates are what plain numbers and differences say, and nothing is set up twice."""
+
+from __future__ import annotations
 
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
+import sympy as sp
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from derive.description.catalogue import MECHANISMS, load
 from derive.equations.windows import limits_of_axis
 from derive.ir.constants import LARGEST, LIMIT
-from derive.ir.interpret import run
-from derive.ir.program import Status
+from derive.ir.interpret import Array, run
+from derive.ir.passes import normalise
+from derive.ir.primitives import Atan2, Root, Select, Wrap
+from derive.ir.program import Iterate, Let, Output, Solve, Statement, Status
+from derive.ir.symbols import Names, flag, real
+from derive.ir.verify import BrokenProgram
+from derive.kinematics.build import build
+from derive.kinematics.rates import Rates
+from derive.kinematics.scan.slopes import slope_name, with_slopes
 from tests.unit.kinematics.machine import machine
 
 PROGRAM = limits_of_axis()
@@ -78,3 +89,91 @@ def test_a_drive_that_is_not_known_changes_nothing(limits: Range) -> None:
     assert (found["lowest"], found["highest"]) == (alone["lowest_a1"].item(), alone["highest_a1"].item())
     assert found["single"] == alone["single_a1"].item()
     assert limits is None or found["middle"] == alone["mid_a1"].item()
+
+
+T, A, B, C, M, N, SPEED, X, ANGLE, VALUE = map(
+    real, ("time", "first", "second", "third", "one", "other", "speed", "x", "a", "value")
+)
+STEP = 1e-6
+TIMES = np.array([-1.3, -0.2, 0.4, 1.1, 2.5])
+STATEMENTS: dict[str, tuple[Statement, ...]] = {
+    "chain": (Let(A, sp.sin(2 * T)), Let(B, A**2 * T), Let(C, B / (2 + A))),
+    "root": (Let(A, T**2 + 1), Let(C, Root(A) * T)),
+    "root of nothing": (Let(A, -(T**2)), Let(C, Root(A) + T)),
+    "choice": (Let(A, 3 * T), Let(C, Select(sp.Gt(A, 1), A**2, A - 7))),
+    "angle": (Let(A, 1 + T**2), Let(B, sp.cos(T)), Let(C, Wrap(Atan2(A, B) + 7) + sp.Abs(T))),
+    "flag": (Let(flag("ahead"), sp.Gt(T, 0)), Let(C, Select(flag("ahead"), T, -(T**2)))),
+    "system": (Solve((M, N), (2 + T**2, T, sp.sin(T), sp.Integer(3)), (T, 1 + T)), Let(C, M * N)),
+    "constant": (Let(A, real("length") * 2), Let(C, A)),
+}
+LENGTH = 1.7
+
+
+def rates_of(statements: tuple[Statement, ...]) -> tuple[tuple[Statement, ...], sp.Expr]:
+    rates = Rates({T: SPEED}, Names(("time", "speed", "length", *(n.name for s in statements for n in s.bound()))))
+    rates.through(statements)
+    return tuple(rates.statements), rates.of(C)
+
+
+@pytest.mark.parametrize("name", STATEMENTS)
+def test_a_rate_is_the_derivative(name: str) -> None:
+    statements = STATEMENTS[name]
+    further, rate = rates_of(statements)
+    program = normalise("rates", (*statements, *further), [Output("rate", rate)])
+    values = normalise("values", statements, [Output("value", C)])
+
+    def at(times: Array) -> Array:
+        found, _ = run(values, {"time": times, "length": np.full(times.shape, LENGTH)})
+        return np.broadcast_to(found["value"], times.shape)
+
+    given = {"time": TIMES, "speed": np.full(TIMES.shape, 0.7), "length": np.full(TIMES.shape, LENGTH)}
+    found, _ = run(program, given)
+    expected = 0.7 * (at(TIMES + STEP) - at(TIMES - STEP)) / (2.0 * STEP)
+    assert np.broadcast_to(found["rate"], TIMES.shape) == pytest.approx(expected, abs=1e-7)
+
+
+def test_a_given_rate_replaces_the_statement() -> None:
+    """What a name is bound to is not differentiated where its rate is given."""
+    rates = Rates({A: SPEED}, Names(("time", "first", "third", "speed")))
+    rates.through((Let(A, sp.sin(T)), Let(C, A**2)))
+    assert rates.of(C) == real("rate_of_third")
+    assert rates.statements == [Let(real("rate_of_third"), 2 * A * SPEED)]
+
+
+def test_what_a_loop_binds_has_no_rate_of_its_own() -> None:
+    loop = Iterate((A,), (T,), (Let(B, A / 2),), (B,), sp.Lt(B, 1), 9, None)
+    rates = Rates({T: SPEED}, Names(("time", "first", "second", "third", "speed")))
+    rates.through((loop, Let(C, A + T)))
+    with pytest.raises(BrokenProgram, match="third: nothing gives a rate"):
+        rates.of(C)
+    known = Rates({T: SPEED, A: 3 * SPEED}, Names(("time", "first", "second", "third", "speed")))
+    known.through((loop, Let(C, A + T)))
+    assert known.statements == [Let(real("rate_of_third"), 4 * SPEED)]
+
+
+VALUES = {
+    "size": sp.Abs(X**2 - 2) * X,
+    "divided by a size": 3 * sp.sin(X) / sp.Abs(ANGLE * X - ANGLE),
+    "root": Root(X**2 + ANGLE),
+    "choice": Select(sp.Gt(X, 1), X**3, -X),
+    "size of a choice": sp.Abs(Select(sp.Gt(X, 1), ANGLE * X, sp.cos(X))),
+}
+
+
+@pytest.mark.parametrize("name", VALUES)
+def test_a_slope_is_what_a_small_step_measures(name: str) -> None:
+    lets = with_slopes([Let(VALUE, VALUES[name])], X)
+    program = normalise("slopes", lets, [Output("value", VALUE), Output("slope", slope_name(VALUE))])
+    x, step, a = np.array([-2.3, -0.7, 0.2, 1.3, 2.9]), 1e-6, np.full(5, 1.7)
+    found, _ = run(program, {"x": x, "a": a})
+    ends = [run(program, {"x": x + side * step, "a": a})[0]["value"] for side in (1, -1)]
+    assert np.allclose(found["slope"], (ends[0] - ends[1]) / (2 * step), rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("file", ["kin_scara3_ccz.py", "kin_p2x_type1.py"])
+def test_no_two_constants_have_the_same_value(file: str) -> None:
+    """What the programs need, and the setup has already, is read by the name that it has."""
+    setup = build(load(MECHANISMS / file)).setup
+    values = Counter(let.value for let in setup.lets() if let.value.args)
+    assert len(values) > 3 and not [value for value, times in values.items() if times > 1]

@@ -1,21 +1,41 @@
-"""Machines whose nominal dimensions leave no pose: the refusal names the rod or the quantity, and comes at once."""
+"""Invented machines from the description to the numbers; nominal dimensions that leave no pose, or few."""
 
 import re
 import time
 from dataclasses import replace
+from functools import cache
 
+import numpy as np
 import pytest
 from sympy import cos, sin
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.mechanism import DescriptionError, Mechanism, Rod, Task, X, Y, length, linear, rod, rotary
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Rod,
+    Task,
+    Vendor,
+    X,
+    Y,
+    angle,
+    length,
+    linear,
+    radians,
+    rod,
+    rotary,
+)
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
+from derive.ir.program import Let, Output, Program, Status
+from derive.kinematics.build import build
+from derive.kinematics.sampling import ENOUGH, sample_axes, sample_machine
 from derive.mechanism import assembly, branch
 from derive.pipeline import derive_and_measure
 from derive.vectors import cross, dot, minus, vector
-from derive.witness import Disagreement
-from tests.unit.kinematics.inventions import described
+from derive.witness import Disagreement, witness
+from tests.unit.kinematics.inventions import INVENTIONS, described
+from tests.unit.kinematics.machine import Machine, Values, machine
 
 A1, A2 = rotary("A1", "turn"), rotary("A2", "turn")
 S1, S2 = linear("S1", "slide"), linear("S2", "slide")
@@ -96,3 +116,142 @@ def test_no_pose_closes(kind: str) -> None:
     with pytest.raises((DescriptionError, Disagreement), match=re.escape(sentence)):
         derive_and_measure(validate(mechanism))
     assert time.process_time() - start < 10.0
+
+
+LEAN_1 = angle("lean_1", "first rail against X", nominal=35.0)
+LEAN_2 = angle("lean_2", "second rail against X", nominal=110.0)
+SLIDE_1, SLIDE_2 = (linear(f"S{k}", f"carriage {k}") for k in (1, 2))
+ALONG_1, ALONG_2 = (vector(cos(radians(lean)), sin(radians(lean))) for lean in (LEAN_1, LEAN_2))
+PLATE = vector(X, Y)
+
+
+def rails(rod_length: float, apart: float = 300.0) -> Mechanism:
+    """Two rails at any angles, some way apart, whose carriages hold a point by two rods."""
+    size = length("rod_length", "both rods", nominal=rod_length)
+    carriage_1 = vector(SLIDE_1 * ALONG_1[0], SLIDE_1 * ALONG_1[1])
+    carriage_2 = vector(apart + SLIDE_2 * ALONG_2[0], SLIDE_2 * ALONG_2[1])
+    rod_1, rod_2 = minus(PLATE, carriage_1), minus(PLATE, carriage_2)
+    return Mechanism(
+        name="Kin_Rails",
+        vendor=Vendor.TEXTBOOK,
+        family="parallel",
+        source="the tests",
+        summary="Two carriages hold a point.",
+        parameters=(LEAN_1, LEAN_2, size),
+        joints=(SLIDE_1, SLIDE_2),
+        rods=(rod("1", carriage_1, PLATE, size), rod("2", carriage_2, PLATE, size)),
+        task=Task("xy"),
+        branches=(
+            branch("left", dot(ALONG_1, rod_1), ahead=+1, behind=-1),
+            branch("right", dot(ALONG_2, rod_2), ahead=+1, behind=-1),
+        ),
+        assembly=assembly("tcp", cross(rod_1, rod_2), margin="aligned", above=+1, below=-1),
+    )
+
+
+@pytest.mark.long
+def test_branches_are_told_apart_where_few_of_the_drawn_poses_close() -> None:
+    """Rods much shorter than the rails are apart: enough poses are found, and each indicator agrees with one step."""
+    mechanism = rails(40.0)
+    assert [m.name for m in build(mechanism).margins] == ["left", "right", "aligned"]
+    found = machine(mechanism)
+    drawn = sample_axes(mechanism, sample_machine(mechanism, 21), 64, 22)
+    _, status = found.run(found.kinematics.forward, drawn)
+    assert 0 < np.sum(np.asarray(status) == Status.OK) < ENOUGH
+
+
+@pytest.mark.long
+def test_a_loop_that_closes_far_away_is_said_to() -> None:
+    """Rails that cross far from where they begin: the sentence names where, by the law of sines."""
+    sentence = "no sampled pose is possible, but the loop closes at S1 = 9.728e+05, S2 = 5.938e+05: state nominal"
+    with pytest.raises(DescriptionError, match=re.escape(sentence)):
+        build(rails(1e-3, 1e6))
+
+
+COUNT = 120
+EVERY = pytest.mark.parametrize("name", INVENTIONS)
+
+
+@cache
+def built(name: str) -> Machine:
+    """The machine with offsets on its axes: nothing stands at zero by accident."""
+    mechanism = validate(INVENTIONS[name].mechanism)
+    offsets = {j.offset.name: 10.0 * k - 25.0 for k, j in enumerate(mechanism.joints)}
+    return machine(mechanism, **offsets)
+
+
+def axes_of(name: str) -> Values:
+    """Axis values over several turns and along the slides; radii on the side that the machine has."""
+    generator = np.random.default_rng(3)
+    found: Values = {}
+    for joint in built(name).kinematics.mechanism.joints:
+        low, high = (-500.0, 500.0) if joint.is_angle else (5.0, 400.0)
+        found[joint.axis.name] = generator.uniform(low, high, COUNT) + built(name).constants[joint.offset.name]
+    return found
+
+
+def by_hand(name: str, axes: Values) -> dict[str, np.ndarray]:
+    """x, y, z and turn at axis values, by the formulas of the invention."""
+    constants, joints, motors = built(name).constants, {}, {}
+    for joint in built(name).kinematics.mechanism.joints:
+        motors[joint.name] = (axes[joint.axis.name] - constants[joint.offset.name]) * (
+            np.pi / 180 if joint.is_angle else 1.0
+        )
+        joints[joint.name] = motors[joint.name]
+    if "coupling_12" in constants:
+        joints["A2"] = joints["A2"] + constants["coupling_12"] * motors["A1"]
+    plane, z, turn = INVENTIONS[name].hand(constants, joints)
+    return {
+        k: np.broadcast_to(v, (COUNT,)) for k, v in {"x": plane.real, "y": plane.imag, "z": z, "turn": turn}.items()
+    }
+
+
+@pytest.mark.slow
+@EVERY
+def test_forward_is_what_the_description_means(name: str) -> None:
+    """Forward kinematics is that of the closure, computed by hand."""
+    axes = axes_of(name)
+    pose, expected = built(name).forward(axes), by_hand(name, axes)
+    size = 1 + max(np.abs(expected[c]).max() for c in "xyz")
+    for coordinate in "xyz":
+        assert np.abs(pose[coordinate] - expected[coordinate]).max() <= 1e-12 * size
+    if "turn z" in built(name).kinematics.rows:
+        assert np.abs(pose["r11"] - np.cos(expected["turn"])).max() <= 1e-11
+        assert np.abs(pose["r21"] - np.sin(expected["turn"])).max() <= 1e-11
+
+
+@pytest.mark.slow
+@EVERY
+def test_the_witness_finds_no_other_solution(name: str) -> None:
+    """Multi-start root finding finds exactly as many solutions as there are slots."""
+    evidence = witness(built(name).kinematics, INVENTIONS[name].mechanism)
+    assert evidence.inverted is not None
+    assert evidence.inverted.solutions == len(built(name).slots)
+
+
+INPUTS = (0.0, 1e-300, -1e-12, 1e-6, 1.0, -300.0, 500.0, 1e6, 1e9, -1e9)
+
+
+def everything(program: Program) -> Program:
+    """The program with every value that it binds as an output."""
+    return replace(program, outputs=tuple(Output(s.name.name, s.name) for s in program.body if isinstance(s, Let)))
+
+
+@pytest.mark.slow
+@EVERY
+@pytest.mark.parametrize(
+    "kind", ["forward", "branch", "singularity", "jacobian", "offset_branch", "offset_configuration"]
+)
+def test_total(name: str, kind: str) -> None:
+    """No input gives NaN or infinity, whatever the status: nothing that would stop a controller."""
+    program = getattr(built(name).kinematics, kind)
+    if program is None:
+        assert kind.startswith("offset") and not INVENTIONS[name].mechanism.offers_points
+        return
+    generator = np.random.default_rng(9)
+    free = [s.name for s in program.inputs if s.name not in built(name).constants]
+    given = {n: generator.choice(INPUTS, 3000) for n in free}
+    given |= {n: generator.choice([-1.0, 1.0], 3000) for n in free if n.startswith("sigma_")}
+    values, _ = built(name).run(everything(program), given)
+    for let, value in values.items():
+        assert np.all(np.isfinite(value)), let

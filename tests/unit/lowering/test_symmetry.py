@@ -1,4 +1,4 @@
-"""Mirrored branches: the program before and after, and the same answers."""
+"""Mirrored branches and the sides of choices: the program before and after, and the same answers."""
 
 import pytest
 import sympy as sp
@@ -6,17 +6,21 @@ import sympy as sp
 from derive.ir.constants import DEGREE
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
-from derive.ir.program import Let, Output, Program
+from derive.ir.program import Let, Output, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import real
+from derive.ir.tree import If, Item
 from derive.lowering.draft import Reader, changed, values_of
+from derive.lowering.passes import structured
+from derive.lowering.scheduling import scheduled
 from derive.lowering.symmetry import Symmetry
 from derive.lowering.writing import written
 from derive.report.cost import cost_of
 from tests.unit.answers import same, values
 
-A, B, C, D, N, R, T, X, Y = (real(n) for n in "abcdnrtxy")
-C_DOWN, C_UP, S_DOWN, S_UP, M_DOWN, M_UP = (real(n) for n in ("c_down", "c_up", "s_down", "s_up", "m_down", "m_up"))
-AXIS_DOWN, AXIS_UP = real("axis_down"), real("axis_up")
+A, B, C, D, E, F, N, R, T, X, Y = (real(n) for n in "abcdefnrtxy")
+C_DOWN, C_UP, S_DOWN, S_UP, M_DOWN, M_UP, AXIS_DOWN, AXIS_UP = map(
+    real, "c_down c_up s_down s_up m_down m_up axis_down axis_up".split()
+)
 REGULAR = sp.Gt(R, 1)
 
 
@@ -138,3 +142,90 @@ def test_an_angle_whose_value_is_taken_is_left_alone() -> None:
     program = axes(down=Wrap(Atan2(X, Y)) / DEGREE, up=Wrap(Atan2(-X, -Y)) / DEGREE / 3)
     assert cost_of(with_symmetry(program)).trigonometric == 2
     same(program, with_symmetry(program))
+
+
+LARGE, NEAR = sp.Gt(R, 1), sp.Lt(X, 2)
+
+
+def shape(items: tuple[Item, ...]) -> list[object]:
+    """Names in order; a choice as its condition and its two sides."""
+    found: list[object] = []
+    for item in items:
+        if isinstance(item, If):
+            found.append((item.condition, shape(item.holds), shape(item.fails)))
+        else:
+            found.append(item.name if isinstance(item, Let) else "require")
+    return found
+
+
+def test_a_choice_that_a_number_decides_is_decided_with_it() -> None:
+    """`stays` is 1 where X is near, and then nobody needs the long way round."""
+    stays, long_way = real("stays"), real("long_way")
+    body = [
+        Let(long_way, sp.sin(Y)),
+        Let(stays, Select(NEAR, sp.Integer(1), Select(sp.Gt(long_way, 0), sp.Integer(1), sp.Integer(0)))),
+        Let(A, Select(sp.Gt(stays, 0), Y, long_way)),
+        Let(B, Select(sp.Gt(stays, 0), R, long_way + 1)),
+    ]
+    (arms,) = scheduled(body, [A, B])
+    assert isinstance(arms, If) and arms.condition == NEAR
+    assert arms.holds == (Let(A, Y), Let(B, R))
+    assert shape(arms.fails)[0] == long_way
+
+
+def test_what_needs_a_choice_before_it_is_not_gathered_with_that() -> None:
+    """E needs F, which needs C and is needed outside: there are two choices."""
+    body = [
+        Let(A, Select(LARGE, X, Y)),
+        Let(C, Select(LARGE, X + 1, Y + 1)),
+        Let(F, A + C),
+        Let(D, Select(LARGE, F, Y)),
+        Let(E, Select(LARGE, F + 1, X)),
+    ]
+    assert shape(scheduled(body, [D, E, F])) == [(LARGE, [A, C], [A, C]), F, (LARGE, [D, E], [D, E])]
+
+
+def test_a_condition_is_not_crossed() -> None:
+    """Choices on both sides of a refusal stay on their sides."""
+    refused = Require(NEAR, Status.UNREACHABLE)
+    body = [Let(A, Select(LARGE, X, Y)), refused, Let(B, Select(LARGE, Y, X))]
+    assert scheduled(body, [A, B]) == tuple(body)
+
+
+def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
+    """A value that only the second sides of two choices read is bound on both of these sides."""
+    body = [
+        Let(D, sp.sin(Y)),
+        Let(A, Select(LARGE, X, D)),
+        Let(B, Select(LARGE, X + 1, D + 1)),
+        Let(C, Select(NEAR, Y, D + A)),
+        Let(E, Select(NEAR, Y + 1, D + B)),
+    ]
+    assert shape(scheduled(body, [A, B, C, E])) == [(LARGE, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
+
+
+def refusing(*body: Statement) -> Program:
+    return normalise("branch", body, [Output("a", A), Output("b", B)])
+
+
+def test_a_choice_waits_for_what_it_needs() -> None:
+    """B needs the solution of an equation, which stays behind the refusal."""
+    first, refused, last = (
+        Let(A, Select(LARGE, X, Y)),
+        Require(sp.Gt(A, 0), Status.UNREACHABLE),
+        Let(B, Select(LARGE, Y, D)),
+    )
+    program = refusing(first, refused, Solve((D,), (E,), (F,)), last)
+    assert [type(item).__name__ for item in structured(program)] == ["Let", "Require", "Solve", "Let"]
+
+
+def test_what_a_later_choice_needs_does_not_go_before_an_earlier_one() -> None:
+    """C stands first, and only the second side of the second choice needs it."""
+    body = [
+        Let(C, sp.sin(Y)),
+        Let(A, Select(NEAR, X, Y)),
+        Let(D, Select(NEAR, X + 1, Y + 1)),
+        Let(B, Select(LARGE, A, C)),
+        Let(E, Select(LARGE, D, C + 1)),
+    ]
+    assert shape(scheduled(body, [A, B, D, E])) == [(NEAR, [A, D], [A, D]), (LARGE, [B, E], [B, E])]

@@ -40,7 +40,6 @@ def lets(program: Program) -> dict[str, sp.Expr]:
 
 
 def test_a_negative_is_not_computed_again() -> None:
-    """A value that is the negative of the other branch is not computed again."""
     found = unroll(program(Let(A, Root(X) * ELBOW.symbol), outputs={"o": A + 1}), (ELBOW,))
     assert lets(found) == {"a_right": Root(X)}
     assert {o.name: o.value for o in found.outputs}["o_left"] == 1 - real("a_right")

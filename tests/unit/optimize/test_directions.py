@@ -1,14 +1,18 @@
-"""Shorter inverses: the program before and after, and the same answers."""
+"""Directions of angles, of scaled vectors and of cross products: the program before and after."""
 
+import numpy as np
 import pytest
 import sympy as sp
 
 from derive.ir.constants import DEGREE
+from derive.ir.interpret import run
 from derive.ir.passes import normalise
-from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, Wrap
+from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal, Wrap
 from derive.ir.program import Let, Output, Program
-from derive.ir.symbols import real
+from derive.ir.symbols import Sign, count, real
 from derive.ir.verify import BrokenProgram
+from derive.lowering.passes import STRAIGHT_LINE, lowered
+from derive.lowering.unrolling import unroll
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.without_periods import angles_modulo_turns
 from tests.unit.answers import plain_directions, same, values
@@ -16,7 +20,9 @@ from tests.unit.answers import plain_directions, same, values
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
     real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")
 )
-A, B, E, L, N, R, T, U, V, X, Y = (real(n) for n in "abelnrtuvxy")
+A, B, E, L, N, R, T, U, V, X, Y, K, COS, SIN, LENGTH, DIVISOR, AXIS = map(
+    real, ("a", "b", "e", "l", "n", "r", "t", "u", "v", "x", "y", "k", "cos_q", "sin_q", "length", "divisor", "axis_q")
+)
 AXIS1, AXIS2, AXIS3 = (real(f"axis_a{i}") for i in (1, 2, 3))
 REGULAR = sp.Gt(R, 1)
 
@@ -70,7 +76,6 @@ def test_a_divisor_that_is_no_length_is_kept() -> None:
 @pytest.mark.parametrize("senses", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign: int) -> None:
-    """The angle of a direction that another angle rotates is the sum or difference of both angles."""
     first, second = senses
     lets = (
         Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2),
@@ -199,3 +204,70 @@ def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
     with pytest.raises(BrokenProgram):
         of(Let(angle, Atan2(X, Y)), Let(R, halves[angle]), outputs=(R,))
     assert angles_modulo_turns(of(Let(angle, Atan2(X, Y)), Let(R, halves[Wrap(angle)]), outputs=(R,))) == set()
+
+
+RNG = np.random.default_rng(5)
+SAMPLES = {name: RNG.uniform(-2.0, 2.0, 400) for name in ("x", "y", "k", "ref")}
+
+
+def _scaled(length: sp.Expr, condition: sp.Basic) -> Program:
+    axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
+    divisor = Let(DIVISOR, Select(condition, LENGTH, 1))
+    lets = [Let(LENGTH, length), divisor, Let(COS, X / DIVISOR), Let(SIN, Y / DIVISOR), Let(AXIS, axis)]
+    return normalise("p", lets, [Output("axis_q", AXIS)])
+
+
+def mirrored(program: Program) -> Program:
+    """The program as a graph, of whose angles the turn is free."""
+    (changed,), _ = lowered([program], (), STRAIGHT_LINE)
+    return changed
+
+
+def _agree(first: Program, second: Program) -> None:
+    given = {
+        name: values for name, values in SAMPLES.items() if name in {s.name for s in (*first.inputs, *second.inputs)}
+    }
+    np.testing.assert_allclose(run(second, given)[0]["axis_q"], run(first, given)[0]["axis_q"], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "length, condition, is_proven",
+    [
+        (Root(X**2 + Y**2), sp.Float("1e-11") < LENGTH, True),
+        (K, sp.Abs(LENGTH) > sp.Float("1e-11"), False),
+        (X * K, sp.Abs(LENGTH) > sp.Float("1e-11"), False),
+        (-Root(X**2 + K**2), -sp.Float("1e-11") > LENGTH, False),
+        (Root(X**2 + K**2) - 1, sp.Abs(LENGTH) > sp.Float("1e-11"), False),
+    ],
+)
+def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
+    length: sp.Expr, condition: sp.Basic, is_proven: bool
+) -> None:
+    """A divisor is dropped from a direction only if it is proven to be positive."""
+    program = _scaled(length, condition)
+    found = plain_directions(program)
+    _agree(program, found)
+    is_divided = any(1 / DIVISOR in sp.Mul.make_args(let.value) for let in found.lets())
+    assert is_divided != is_proven
+
+
+@pytest.mark.parametrize("factor", [K, -K, X * K, -Root(K**2), sp.Integer(-1)])
+def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
+    """A factor of unknown sign keeps its effect on the angle of a direction."""
+    axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
+    program = normalise("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
+    for change in (plain_directions, mirrored):
+        _agree(program, change(program))
+
+
+def test_a_branch_sign_turns_a_direction() -> None:
+    """A branch sign in front of a direction turns the angle by half a turn on one branch."""
+    sigma = Sign(count("sigma_elbow"), ("up", "down"))
+    sign, axis = real("sign_elbow"), NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
+    lets = [Let(sign, ToReal(sigma.symbol)), Let(COS, sign * X), Let(SIN, sign * Y), Let(AXIS, axis)]
+    program = normalise("p", lets, [Output("axis_q", AXIS)])
+    given = {name: SAMPLES[name] for name in ("x", "y", "ref")}
+    every, _ = run(unroll(mirrored(program), (sigma,)), given)
+    for number, word in ((1, "up"), (-1, "down")):
+        wanted, _ = run(program, {**given, "sigma_elbow": np.asarray(number)})
+        np.testing.assert_allclose(every[f"axis_q_{word}"], wanted["axis_q"], atol=1e-9)

@@ -1,17 +1,25 @@
-"""Turning loops whose equations are stated without rods: read as rods where they are, else refused with the reason."""
+"""Turning loops stated without rods, with cones of their joints, and with a home pose that is a length."""
 
 import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import sympy as sp
 
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Task, Turning, X, Y, Z, length
 from derive.description.validate import validate
+from derive.form.inner_names import with_symbols
+from derive.ir.constants import DEGREE
+from derive.ir.interpret import run
+from derive.ir.program import Status
+from derive.ir.symbols import real
 from derive.kinematics.build import build
+from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
+from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD
 from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
 from tests.mechanisms import kinematics_of, named
-from tests.unit.kinematics.turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
+from tests.unit.kinematics.test_turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
 MACHINES = {
     **{name: own for name, (own, _) in TURNING_INVENTIONS.items()},
@@ -117,3 +125,63 @@ def test_a_length_under_a_square_has_the_sign_that_makes_it_positive() -> None:
     rods = with_stated_rods(stated).rods
     assert [r.length for r in rods] == [total.symbol - r.length for r in own.rods]
     assert with_positive_lengths(with_stated_rods(stated)).positive == tuple(r.length for r in rods)
+
+
+def with_cones(mechanism: Mechanism, base: list[sp.Expr | None], plate: list[sp.Expr | None]) -> Mechanism:
+    rods = (replace(r, base_cone=b, plate_cone=p) for r, b, p in zip(mechanism.rods, base, plate, strict=True))
+    return replace(mechanism, rods=tuple(rods))
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "cone", "word"),
+    [
+        (TRIPOD, sp.Integer(1), "about the rod at the home pose, and the mechanism has none"),
+        (MECHANISM, real("width"), "reads 'width', which is not a parameter"),
+        (MECHANISM, real("l1"), "reads 'l1', which is not a parameter"),
+    ],
+)
+def test_what_cannot_be_a_cone(mechanism: Mechanism, cone: sp.Expr, word: str) -> None:
+    """A cone without a home pose, or with a width that is no parameter, is refused."""
+    nothing = [None] * (len(mechanism.rods) - 1)
+    for side in (([cone, *nothing], [None, *nothing]), ([None, *nothing], [*nothing, cone])):
+        with pytest.raises(DescriptionError, match=word):
+            validate(with_cones(mechanism, *side))
+
+
+@pytest.mark.long
+def test_a_rod_without_a_cone_is_free_and_others_have_their_own() -> None:
+    """One base joint with one width, one with another; nothing is asked of the others, nor of the platform."""
+    wide, narrow = BASE_CONE * DEGREE, PLATFORM_CONE * DEGREE
+    kin = build(with_cones(MECHANISM, [None, wide, narrow, None, None, None], [None] * 6))
+    names = [s.name for s in kin.branch.inputs]
+    assert [n for n in names if "least_cos" in n] == ["least_cos_base_1", "least_cos_base_2"]
+    assert [n for n in names if n.startswith("home_along")] == [f"home_along_{rod}_{c}" for rod in "23" for c in "xyz"]
+    assert not [n for n in names if n.startswith("plate_axis")]
+    for base, plate, status in (
+        (90.0, 90.0, Status.OK),
+        (1.0, 90.0, Status.UNREACHABLE),
+        (90.0, 1.0, Status.UNREACHABLE),
+    ):
+        given = {p.name: np.asarray(float(p.nominal)) for p in kin.parameters}
+        given |= {BASE_CONE.name: np.asarray(base), PLATFORM_CONE.name: np.asarray(plate)}
+        constants, _ = run(kin.setup, given)
+        pose = {f"r{i}{k}": np.asarray(float(i == k)) for i in (1, 2, 3) for k in (1, 2, 3)}
+        pose |= {"x": np.asarray(60.0), "y": np.asarray(0.0), "z": np.asarray(600.0)}
+        assert run(kin.branch, {**constants, **pose})[1] == status
+
+
+def test_the_hexapod_has_them() -> None:
+    """The rods of the hexapod have cones at both ends."""
+    assert {r.base_cone for r in MECHANISM.rods} == {BASE_CONE * DEGREE}
+    assert {r.plate_cone for r in MECHANISM.rods} == {PLATFORM_CONE * DEGREE}
+
+
+@pytest.mark.long
+def test_a_home_pose_may_be_a_length() -> None:
+    described = named("Kin_Hexapod")
+    read = {s for v in described.home for s in sp.sympify(v).free_symbols}
+    own = next(p for p in described.parameters if p.symbol in read)
+    height = length(own.name, own.meaning, nominal=abs(own.nominal) or 100.0)
+    stated = with_symbols(described, {own.symbol: height.symbol})
+    assert own.symbol != height.symbol and stated.home != described.home
+    assert build(stated).forward.outputs

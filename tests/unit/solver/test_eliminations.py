@@ -112,5 +112,4 @@ def test_a_plain_unknown_is_not_squared() -> None:
 
 
 def test_no_difference_by_an_unknown_factor() -> None:
-    """No difference is formed with an unknown factor."""
     assert differences(problem(P * sp.cos(A1) - X, P * sp.sin(A1) - Y, angles=(A1,), lengths=(P,))) == ()

@@ -45,7 +45,7 @@ _TOO_MANY = (
 
 def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) -> Mechanism:
     """An arm for the whole pose, or for its direction."""
-    used = chain_symbols(chain)
+    used = {s for factor in chain.factors for s in factor.amount.free_symbols}
     parameters: tuple[Parameter, ...] = tuple(p for p in LENGTHS if p.symbol in used)
     return invention(
         lambda p, q: (p["l0"], p["l0"], p["l0"]),
@@ -55,11 +55,6 @@ def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) 
         task=Task("xyz", turning),
         offset_interface=False,
     ).mechanism
-
-
-def chain_symbols(chain: Chain) -> set[sp.Symbol]:
-    """What a chain reads."""
-    return {s for factor in chain.factors for s in factor.amount.free_symbols}
 
 
 REFUSED = {

@@ -103,7 +103,6 @@ def _with_unknowns(given_problem: Problem, angles: tuple[sp.Symbol, ...]) -> Pro
 
 
 def test_the_reference_of_a_sum_is_the_sum_of_the_references() -> None:
-    """The reference of a sum of angles is the sum of their references."""
     free = substitute(CLOSURE, the_sum("a1 - a2 - a3")).references[real("total")]
     assert sp.expand(free - (reference(A1) - reference(A2) - reference(A3))) == 0
 

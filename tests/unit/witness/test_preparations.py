@@ -22,8 +22,7 @@ from derive.witness import Disagreement, witness
 from tests.machines.guided import GUIDED
 from tests.machines.spherical_machines import SPHERICAL
 from tests.mechanisms import named
-from tests.unit.form.test_loops import MACHINES as LOOPS
-from tests.unit.form.test_loops import delta
+from tests.unit.form.test_chain import LOOPS, delta
 from tests.unit.plate.test_stated_rods import stated
 
 A1, A2, A3 = (rotary(f"A{k}", "turn") for k in (1, 2, 3))

@@ -1,11 +1,14 @@
-"""What the witness says of programs that are wrong in a way of their own: searches, modes, tilts, frames alone."""
+"""What the witness says of programs that are wrong in a way of their own, and of machines beyond its bound of work."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from math import inf
 
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import Branch, Task
+from derive import pipeline
+from derive.description.mechanism import Branch, Mechanism, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
@@ -14,7 +17,9 @@ from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanism import search
+from derive.solver.unsolved import Exhausted
 from derive.witness import Disagreement, inverse, witness
+from derive.work import STEPS, at_most
 from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, described
 
@@ -86,3 +91,30 @@ def test_a_frame_that_is_elsewhere() -> None:
     moved = replace(kinematics.forward, outputs=(Output(first.name, sp.Float(1.5) * first.value), *rest))
     said = said_of(replace(kinematics, forward=moved))
     assert "the frame of a mechanism without joints: error 5.0e-01" in said
+
+
+LONG_ARM = Mechanism(
+    name="Arm", parameters=(L1, L2), joints=(A1, A2), chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2), task=Task("xy")
+)
+
+
+def steps(of: Callable[[Mechanism], object]) -> int:
+    """Those that it takes."""
+    with at_most(inf, unit=STEPS) as work:
+        of(validate(LONG_ARM))
+    return work.done
+
+
+def test_each_stage_is_refused_by_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    most, again = (steps(pipeline.derive_and_measure) - steps(build) for _ in (1, 2))
+    assert most == again < pipeline._MOST_STEPS / 100
+    for bound, stage in (
+        (0, "the search for an example of its branches"),
+        (most // 4, "the measurement against its equations"),
+        (most - 1, "the self-test of the machine"),
+    ):
+        monkeypatch.setattr(pipeline, "_MOST_STEPS", bound)
+        with pytest.raises(Exhausted) as refused:
+            pipeline.derive_and_measure(validate(LONG_ARM))
+        said = with_remedy(str(refused.value))
+        assert said.startswith(f"Arm: {stage} was given up after {bound:,} steps; name another joint in search=")
