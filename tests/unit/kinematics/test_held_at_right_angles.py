@@ -12,7 +12,7 @@ from derive.ir.symbols import branch_sign
 from derive.kinematics.build import build
 from derive.witness.onward import every_root
 from tests.unit.kinematics.test_elimination import commanded, poses_of
-from tests.unit.kinematics.test_refused_within_bounds import J
+from tests.unit.kinematics.test_refusals import J
 
 A1, A2, A3, A4, A5, A6, A7 = J[:7]
 CHAIN_TO_WRIST = (
