@@ -85,8 +85,8 @@ def test_no_pose_is_refused(name: str, zeros: float) -> None:
 @EVERY
 @pytest.mark.parametrize("decade", [-1, -2, -3, -4, -5])
 def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
-    """The planted one is among all solutions, and not only the other one: at 1e-5 degrees, beside a fold, the pose is met
-    to 1e-14 of its size anywhere up to the fold, so nearer to the planted one than to the fold is asked.
+    """The planted one is among all solutions, and not only the other one. At 1e-5 degrees beside a fold the pose is met
+    to 1e-14 of its size anywhere up to the fold: there the answer is nearer to the planted one than to the fold.
     """
     rng, robot = np.random.default_rng(13), made(name).robot
     robot = type(robot)(**{p.name: p.nominal for p in made(name).mechanism.parameters})
