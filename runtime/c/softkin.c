@@ -826,7 +826,8 @@ static int roots_from(const softkin_roots *of, double begin, root *found) {
       break;
     }
     given[of->start] += results[1];
-    if (count > 0 && results[1] < 2.0*SOFTKIN_AHEAD) { /* roots without end, or one as good as triple: nothing new is near */
+    if (count > 0 && results[1] < 2.0*SOFTKIN_AHEAD) {
+      /* roots without end, or one that is as good as triple: nothing new is near */
       skip = fmin(fmax(4.0*skip, SOFTKIN_AHEAD), LONGEST);
       given[of->start] += skip;
       left -= skip;

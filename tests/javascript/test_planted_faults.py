@@ -33,9 +33,9 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "repair of a rotation": (ELBOW, "softkin/rotation.js", r"<= 0\.0001", "<= 0.01"),
     "wide matrix": (PLATE, "softkin/numbers.js", r"factor \* rows\[k\]\[j\]", "factor * rows[k][i]"),
     "no exchange of rows": (PLATE, "softkin/numbers.js", r"determinant = -determinant;", ""),
-    "fewer trials": (SEARCHED, "softkin/constants.js", r"const CELLS = 72;", "const CELLS = 7;"),
-    "way along a curve": (SEARCHED, "softkin/roots.js", r"base \+ scale \* s \* s", "base - scale * s * s"),
-    "tangents": (SEARCHED, "softkin/roots.js", r"met < width \? met", "met < width ? -met"),
+    "fewer passes": (SEARCHED, "ac6_rzryryrxryrz_j6offset.js", r"pass < 4001", "pass < 41"),
+    "one root of two": (SEARCHED, "softkin/roots.js", r"at \+= away;", "at += 2.0 * away;"),
+    "farthest first": (SEARCHED, "softkin/roots.js", r"a\.away - b\.away", "b.away - a.away"),
     "one search alone": (SEARCHED, "softkin/softkin.js", r"others\.some\(\(other\)", "!others.some((other)"),
 }  # fmt: skip
 """The mechanism, the beginning of the file, what stands there, and what is planted."""
@@ -54,7 +54,7 @@ def planted(file: str, found: str, wrong: str) -> Callable[[str, str], str]:
     return change
 
 
-@pytest.mark.slow("trials", "curve", "tangents", "one search")
+@pytest.mark.slow("passes", "of two", "farthest", "one search")
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_found(fault: str) -> None:
     """Some answer differs from that of Python."""
