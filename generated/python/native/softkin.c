@@ -798,7 +798,7 @@ static int put_all(const softkin_roots *of, root *found, int count, double away,
   return count;
 }
 
-/* The root that is nearest to the start, among others where the arm moves while its tool rests; their number. */
+/* Put the root nearest to the start among others, where the arm moves while its tool rests; their number. */
 static int with_nearest(const softkin_roots *of, double *given, double *results, root *found, int count) {
   given[of->onward] = 0.0;
   given[of->start] = of->given[of->start];
@@ -808,10 +808,11 @@ static int with_nearest(const softkin_roots *of, double *given, double *results,
   return put_all(of, found, count, results[1], results);
 }
 
-/* All roots, found onward from an angle. Where the arm moves while its tool rests, every joint value is a root: a
-   stretch of them has one, and the nearest to the start is added. */
+/* All roots, found onward from an angle. Where the arm moves while its tool rests, every joint value is a
+   root: a stretch of them has one, and the nearest to the start is added. */
 static int roots_from(const softkin_roots *of, double begin, root *found) {
-  double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3], left = 2.0*PI - SOFTKIN_AHEAD, skip = 0.0;
+  double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3];
+  double left = 2.0*PI - SOFTKIN_AHEAD, skip = 0.0;
   int count = 0, moves = 0;
   for (int i = 0; i < of->count; i += 1) {
     given[i] = of->given[i];
