@@ -40,7 +40,7 @@ def every_root(kin: Kinematics, given: Mapping[str, Array]) -> tuple[Array, NDAr
         found, _ = run(find, {**values, "start": at})
         left = left - (found["away"] if axes else 0.0)
         going &= found["found"].astype(bool) & (left > 0.0)
-        follows = (found["away"] < 2.0 * _AHEAD) & bool(axes)  # roots without end: the arm moves while its tool rests
+        follows = (found["away"] < 1.1 * _AHEAD) & bool(axes)  # roots without end: the arm moves while its tool rests
         skip = np.where(follows, np.clip(4.0 * skip, _AHEAD, _LONGEST), 0.0)
         at, left = at + found["away"] + skip, left - skip
         is_new = going & ~follows

@@ -762,6 +762,7 @@ softkin_status softkin_inverse_all(const softkin_mechanism *kind, const void *ma
 
 #define MOST_ROOTS 48
 #define LONGEST 0.5 /* the longest step (radians) where every joint value is a root */
+#define NEAR 3e-5   /* roots that are nearer to each other (radians) nearly join */
 
 typedef struct {
   double away, joints[SOFTKIN_MOST_AXES];
@@ -773,38 +774,29 @@ static double distance_to(double difference) {
   return fabs(away - 2.0*PI*round(away/(2.0*PI)));
 }
 
-/* Put a root among others, the nearest first; their number. */
-static int put(root *found, int count, double away, const double *values, int joints) {
-  int k = count;
-  while (k > 0 && found[k - 1].away > away) {
-    found[k] = found[k - 1];
-    k -= 1;
-  }
-  found[k].away = away;
-  for (int i = 0; i < joints; i += 1) {
-    found[k].joints[i] = values[i];
-  }
-  return count + 1;
-}
-
-/* Put the root that a search found among others, and its twin; their number. */
-static int put_all(const softkin_roots *of, root *found, int count, double away, const double *results) {
+/* Put the root that a search found behind others, and its twin; their number. */
+static int put(const softkin_roots *of, root *found, int count, double away, const double *results) {
   const double *twin = &results[2 + of->joints];
-  count = put(found, count, away, &results[2], of->joints);
-  if (of->has_twins && twin[0] != 0.0 && count < MOST_ROOTS) {
-    count = put(found, count, away, &twin[1], of->joints);
+  const int number = of->has_twins && twin[0] != 0.0 ? 2 : 1;
+  for (int k = 0; k < number && count < MOST_ROOTS; k += 1, count += 1) {
+    found[count].away = away;
+    for (int i = 0; i < of->joints; i += 1) {
+      found[count].joints[i] = k == 0 ? results[2 + i] : twin[1 + i];
+    }
   }
   return count;
 }
 
-/* Put the root nearest to the start among others, where the arm moves while its tool rests; their number. */
-static int with_nearest(const softkin_roots *of, double *given, double *results, root *found, int count) {
-  given[of->onward] = 0.0;
-  given[of->start] = of->given[of->start];
-  if (count == MOST_ROOTS || of->find(of->machine, given, results, NULL) != SOFTKIN_OK || results[0] == 0.0) {
-    return count;
+/* The nearest roots first. */
+static void sort_roots(root *found, int count) {
+  for (int k = 1; k < count; k += 1) {
+    const root one = found[k];
+    int at = k;
+    for (; at > 0 && found[at - 1].away > one.away; at -= 1) {
+      found[at] = found[at - 1];
+    }
+    found[at] = one;
   }
-  return put_all(of, found, count, results[1], results);
 }
 
 /* All roots, found onward from an angle. Where the arm moves while its tool rests, every joint value is a
@@ -812,7 +804,8 @@ static int with_nearest(const softkin_roots *of, double *given, double *results,
 static int roots_from(const softkin_roots *of, double begin, root *found) {
   double given[SOFTKIN_MOST_GIVEN], results[2*SOFTKIN_MOST_AXES + 3];
   double left = 2.0*PI - SOFTKIN_AHEAD, skip = 0.0;
-  int count = 0, moves = 0;
+  int count = 0;
+  bool moves = false, is_near = false;
   for (int i = 0; i < of->count; i += 1) {
     given[i] = of->given[i];
   }
@@ -827,18 +820,26 @@ static int roots_from(const softkin_roots *of, double begin, root *found) {
       break;
     }
     given[of->start] += results[1];
-    if (count > 0 && results[1] < 2.0*SOFTKIN_AHEAD) {
-      /* roots without end, or one that is as good as triple: nothing new is near */
+    const bool was_near = is_near;
+    is_near = count > 0 && results[1] < NEAR;
+    if (count > 0 && results[1] < 1.1*SOFTKIN_AHEAD) { /* roots without end: nothing new is near */
       skip = fmin(fmax(4.0*skip, SOFTKIN_AHEAD), LONGEST);
       given[of->start] += skip;
       left -= skip;
       moves = moves || skip == LONGEST;
-    } else {
+    } else { /* between two roots that nearly join the pose is as good as met */
       skip = 0.0;
-      count = put_all(of, found, count, distance_to(given[of->start] - of->given[of->start]), results);
+      count -= is_near && was_near ? 1 : 0;
+      count = put(of, found, count, distance_to(given[of->start] - of->given[of->start]), results);
     }
   }
-  return moves ? with_nearest(of, given, results, found, count) : count;
+  given[of->onward] = 0.0;
+  given[of->start] = of->given[of->start];
+  if (moves && of->find(of->machine, given, results, NULL) == SOFTKIN_OK && results[0] != 0.0) {
+    count = put(of, found, count, results[1], results);
+  }
+  sort_roots(found, count);
+  return count;
 }
 
 void softkin_every_root(const softkin_roots *of, softkin_take take, void *context) {

@@ -5,13 +5,28 @@ x, y, z and the turn of the flange about z, or its whole rotation, entry by entr
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import reduce
 
 import numpy as np
 
 from tests.catalogue.closure import Array
+from tests.catalogue.five_axes import (
+    Pose,
+    dual_table,
+    five_axes,
+    gantry_head,
+    head_head,
+    head_head_a,
+    head_table,
+    head_table_a,
+    nutating_head,
+    nutating_head_a,
+    nutating_head_table,
+    nutating_table,
+    nutating_table_a,
+    table_table,
+    table_table_b,
+)
 
-Pose = tuple[Array, Array, Array, Array | tuple[tuple[Array, ...], ...]]
 Formula = Callable[[Mapping[str, float], Sequence[Array]], Pose]
 TURN = 2 * np.pi
 
@@ -146,155 +161,12 @@ def _articulated(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return *(wrist + p["d6"] * towards), tuple(zip(first, second, towards, strict=True))
 
 
-def _gantry_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """Turns about y, the turned x and the flange's z, multiplied out."""
-    b, a, c = q[3:]
-    (ca, cb, cc), (sa, sb, sc) = ([f(v) for v in (a, b, c)] for f in (np.cos, np.sin))
-    rotation = (
-        (cb * cc + sb * sa * sc, sb * sa * cc - cb * sc, sb * ca),
-        (ca * sc, ca * cc, -sa),
-        (cb * sa * sc - sb * cc, sb * sc + cb * sa * cc, cb * ca),
-    )
-    flange = [p[f"flange_{w}"] for w in "xyz"]
-    return *(q[i] + sum(r * o for r, o in zip(rotation[i], flange, strict=True)) for i in range(3)), rotation
-
-
-def _five_axes(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The azimuth turns the inclination: the tool along +Z, or along -Z, goes to +X with a positive inclination."""
-    side, a, b = p["tool_side"], q[3], q[4]
-    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), side * np.sin(b)
-    rotation = ((ca * cb, -sa, ca * sb), (sa * cb, ca, sa * sb), (-sb, 0 * a, cb))
-    reach = side * p["tool_length"]
-    return q[0] + reach * ca * sb, q[1] + reach * sa * sb, q[2] + reach * cb, rotation
-
-
-def _table_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The trunnion turns the workpiece from Y to Z, the table on it from X to Y: the tool seen from there."""
-    ca, sa, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    tip = q[2] - p["tool_length"]
-    y, z = ca * q[1] + sa * tip - p["pivot_y"], ca * tip - sa * q[1] - p["pivot_z"]
-    rotation = ((cc, sc * ca, sc * sa), (-sc, cc * ca, cc * sa), (0 * sa, -sa, ca))
-    return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
-
-
 def _palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     """Both arms by their angles against the base; the flange is level."""
     ahead = p["shoulder_offset"] + p["link_length_1"] * np.sin(q[1]) + p["link_length_2"] * np.cos(q[2])
     ahead = ahead + p["wrist_offset_x"]
     z = p["base_height"] + p["link_length_1"] * np.cos(q[1]) - p["link_length_2"] * np.sin(q[2]) + p["wrist_offset_z"]
     return ahead * np.cos(q[0]), ahead * np.sin(q[0]), z, q[0] + q[3]
-
-
-def _head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The head leans to +X, the table turns the workpiece from X to Y."""
-    cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    x = q[0] + p["head_offset"] * cb - p["pivot_length"] * sb
-    z = q[2] - p["head_offset"] * sb - p["pivot_length"] * cb
-    rotation = ((cc * cb, sc, cc * sb), (-sc * cb, cc, -sc * sb), (-sb, 0 * sb, cb))
-    return cc * x + sc * q[1], cc * q[1] - sc * x, z, rotation
-
-
-def _head_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The fork turns the head about Z, the head leans."""
-    cc, sc, cb, sb = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    ahead = p["fork_offset"] + p["head_offset"] * cb - p["pivot_length"] * sb
-    z = q[2] - p["head_offset"] * sb - p["pivot_length"] * cb
-    rotation = ((cc * cb, -sc, cc * sb), (sc * cb, cc, sc * sb), (-sb, 0 * sb, cb))
-    return q[0] + cc * ahead, q[1] + sc * ahead, z, rotation
-
-
-def _head_table_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The head leans to -Y, the table turns the workpiece from X to Y."""
-    ca, sa, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    y = q[1] + p["head_offset"] * ca + p["pivot_length"] * sa
-    z = q[2] + p["head_offset"] * sa - p["pivot_length"] * ca
-    rotation = ((cc, sc * ca, -sc * sa), (-sc, cc * ca, -cc * sa), (0 * sa, sa, ca))
-    return cc * q[0] + sc * y, cc * y - sc * q[0], z, rotation
-
-
-def _head_head_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The fork turns the head about Z, the head leans to -Y."""
-    cc, sc, ca, sa = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    ahead = p["fork_offset"] + p["head_offset"] * ca + p["pivot_length"] * sa
-    z = q[2] + p["head_offset"] * sa - p["pivot_length"] * ca
-    rotation = ((cc, -sc * ca, sc * sa), (sc, cc * ca, -cc * sa), (0 * sa, sa, ca))
-    return q[0] - sc * ahead, q[1] + cc * ahead, z, rotation
-
-
-def _table_table_b(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The trunnion turns the workpiece from Z to X, the table on it from X to Y: the tool seen from there."""
-    cb, sb, cc, sc = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
-    tip = q[2] - p["tool_length"]
-    x, z = cb * q[0] - sb * tip - p["pivot_x"], cb * tip + sb * q[0] - p["pivot_z"]
-    rotation = ((cc * cb, sc, -cc * sb), (-sc * cb, cc, sc * sb), (sb, 0 * sb, cb))
-    return cc * x + sc * q[1], cc * q[1] - sc * x, z, rotation
-
-
-def _about(axis: Sequence[float], angle: Array) -> Array:
-    """Rodrigues: the rotation about a unit vector, entry by entry."""
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    c, s = np.cos(angle), np.sin(angle)
-    return (
-        np.multiply.outer(np.eye(3), c) + np.multiply.outer(cross, s) + np.multiply.outer(np.outer(axis, axis), 1 - c)
-    )
-
-
-def _inclined(p: Mapping[str, float]) -> tuple[float, float, float]:
-    return 0.0, float(np.sin(np.radians(p["nutation"]))), float(np.cos(np.radians(p["nutation"])))
-
-
-def _product(*turns: Array) -> Array:
-    """Rotations, entry by entry, one after the other."""
-    return reduce(lambda a, b: np.einsum("ij...,jk...->ik...", a, b), turns)
-
-
-def _leaning_x(p: Mapping[str, float]) -> tuple[float, float, float]:
-    return _inclined(p)[1], 0.0, _inclined(p)[2]
-
-
-def _nutating_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    return _forked(p, q, _inclined(p), np.eye(3)[0])
-
-
-def _nutating_head_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    return _forked(p, q, _leaning_x(p), np.eye(3)[1])
-
-
-def _forked(p: Mapping[str, float], q: Sequence[Array], axis: Sequence[float], across: Array) -> Pose:
-    """The offsets of the fork and of the head are across its axis."""
-    fork, head = _about((0, 0, 1), q[3]), _about(axis, q[4])
-    arm = np.einsum("ij...,j->i...", head, across * p["head_offset"] - (0, 0, p["pivot_length"]))
-    tip = np.einsum("ij...,j...->i...", fork, arm + np.multiply.outer(across * p["fork_offset"], np.ones_like(q[3])))
-    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, _product(fork, head)))
-
-
-def _nutating_head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    head, table = _about(_inclined(p), q[3]), _about((0, 0, 1), -q[4])
-    tip = np.einsum("ij...,j->i...", head, [p["head_offset"], 0, -p["pivot_length"]])
-    place = np.einsum("ij...,j...->i...", table, np.array([tip[k] + q[k] for k in range(3)]))
-    return *place, tuple(map(tuple, _product(table, head)))
-
-
-def _two_tables(
-    p: Mapping[str, float], q: Sequence[Array], outer: Sequence[float], inner: Sequence[float] = (0, 0, 1)
-) -> Pose:
-    """Tables one on the other, each turned back about its axis."""
-    carrier, table = _about(outer, -q[3]), _about(inner, -q[4])
-    tip = np.einsum("ij...,j...->i...", carrier, np.array([q[0], q[1], q[2] - p["tool_length"]]))
-    tip = np.array([tip[k] - p.get(f"pivot_{c}", 0.0) for k, c in enumerate("xyz")])
-    return *np.einsum("ij...,j...->i...", table, tip), tuple(map(tuple, _product(table, carrier)))
-
-
-def _nutating_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    return _two_tables(p, q, _inclined(p))
-
-
-def _nutating_table_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    return _two_tables(p, q, _leaning_x(p))
-
-
-def _dual_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    return _two_tables(p, q, (1, 0, 0), (0, 1, 0))
 
 
 def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
@@ -317,25 +189,25 @@ H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
-    "Kin_5Axes": _five_axes,
-    "Softkin_HeadHead_CA": _head_head_a,
-    "Softkin_HeadHead_CB": _head_head,
-    "Softkin_HeadTable_AC": _head_table_a,
-    "Softkin_HeadTable_BC": _head_table,
-    "Softkin_NutatingHead_CA": _nutating_head_a,
-    "Softkin_NutatingHead_CB": _nutating_head,
-    "Softkin_NutatingTable_BC": _nutating_table,
-    "Softkin_NutatingHeadTable_BC": _nutating_head_table,
-    "Softkin_NutatingTable_AC": _nutating_table_a,
+    "Kin_5Axes": five_axes,
+    "Softkin_HeadHead_CA": head_head_a,
+    "Softkin_HeadHead_CB": head_head,
+    "Softkin_HeadTable_AC": head_table_a,
+    "Softkin_HeadTable_BC": head_table,
+    "Softkin_NutatingHead_CA": nutating_head_a,
+    "Softkin_NutatingHead_CB": nutating_head,
+    "Softkin_NutatingTable_BC": nutating_table,
+    "Softkin_NutatingHeadTable_BC": nutating_head_table,
+    "Softkin_NutatingTable_AC": nutating_table_a,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,
-    "Softkin_TableTable_AB": _dual_table,
-    "Softkin_TableTable_AC": _table_table,
-    "Softkin_TableTable_BC": _table_table_b,
+    "Softkin_TableTable_AB": dual_table,
+    "Softkin_TableTable_AC": table_table,
+    "Softkin_TableTable_BC": table_table_b,
     "Softkin_Tracyl": _mantle,
     "Softkin_Transmit": _face,
-    "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
+    "Kin_Ac6_TXTYTZRYRXRZ": gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,
     "Kin_Crane": _crane,

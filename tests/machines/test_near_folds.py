@@ -85,8 +85,8 @@ def test_no_pose_is_refused(name: str, zeros: float) -> None:
 @EVERY
 @pytest.mark.parametrize("decade", [-1, -2, -3, -4, -5])
 def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
-    """The planted one is among all solutions, and not only the other one. At 1e-5 degrees beside a fold the pose is met
-    to 1e-14 of its size anywhere up to the fold: there the answer is nearer to the planted one than to the fold.
+    """The planted one is among all solutions, and not only the other one; at 1e-5 degrees they are one: what stands
+    between them meets the pose to 1e-12 of its size.
     """
     rng, robot = np.random.default_rng(13), made(name).robot
     robot = type(robot)(**{p.name: p.nominal for p in made(name).mechanism.parameters})
@@ -95,7 +95,7 @@ def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
         solutions = robot.inverse_all(robot.forward(tuple(axes))[0], tuple(rng.uniform(-180.0, 180.0, 3)))
         found = [a for slot in solutions if slot.axes is not None for a in (slot.axes, *slot.others)]
         apart = [np.abs((np.subtract(a, axes) + 180.0) % 360.0 - 180.0).max() for a in found]
-        assert min(apart) < max(0.1 * 10.0**decade, 6e-6), axes.tolist()
+        assert min(apart) < max(0.1 * 10.0**decade, 3e-5), axes.tolist()
 
 
 def test_a_fold_hides_no_other_solution() -> None:

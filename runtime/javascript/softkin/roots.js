@@ -2,7 +2,7 @@
 
 import { AHEAD, ELSEWHERE } from "./constants.js";
 
-const [SEARCHES, LONGEST] = [48, 0.5];
+const [SEARCHES, LONGEST, NEAR] = [48, 0.5, 3e-5];
 
 /**
  * The joints at all roots that fit, the nearest to the start first. Where the arm moves while its tool rests, every
@@ -26,18 +26,22 @@ export function everyRoot(find, k, given, start, onward, count) {
   };
   let moves = false;
   for (const begin of [reference + ELSEWHERE, reference + ELSEWHERE + 1.0]) {
-    let [left, at, skip] = [2.0 * Math.PI - AHEAD, begin, 0.0];
+    let [left, at, skip, isNear] = [2.0 * Math.PI - AHEAD, begin, 0.0, false];
     for (let searches = found.length > 0 ? SEARCHES : 0; searches < SEARCHES; searches += 1) {
       const [there, away, ...results] = search(at, true);
       left -= found.length > 0 ? away : 0.0;
       if (!there || left <= 0.0) break;
       at += away;
-      if (found.length > 0 && away < 2.0 * AHEAD) {
-        // roots without end, or one that is as good as triple: nothing new is near
+      const wasNear = isNear;
+      isNear = found.length > 0 && away < NEAR;
+      if (found.length > 0 && away < 1.1 * AHEAD) {
+        // roots without end: nothing new is near
         skip = Math.min(Math.max(4.0 * skip, AHEAD), LONGEST);
         at += skip;
         left -= skip;
       } else {
+        // between two roots that nearly join the pose is as good as met
+        if (isNear && wasNear) found.pop();
         skip = 0.0;
         keep(distance(at - reference), results);
       }

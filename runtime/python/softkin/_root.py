@@ -9,8 +9,10 @@ from typing import Any
 from softkin._constants import AHEAD, ELSEWHERE
 
 Values = tuple[Any, ...]
-SEARCHES, LONGEST = 48, 0.5
-"""The searches of a way around the circle, at most; the longest step (radians) where every joint value is a root."""
+SEARCHES, LONGEST, NEAR = 48, 0.5, 3e-5
+"""The searches of a way around the circle, at most; the longest step (radians) where every joint value is a root; roots
+that are nearer to each other nearly join.
+"""
 
 
 def every_root(find: Callable[[Values], Any], given: Values, start: int, onward: int, joints: int) -> list[Values]:
@@ -36,17 +38,20 @@ def every_root(find: Callable[[Values], Any], given: Values, start: int, onward:
             found.append((away, tuple(results[joints + 1 :])))
 
     for begin in (reference + ELSEWHERE, reference + ELSEWHERE + 1.0):  # a root may stand at the first, too
-        left, at, skip = 2.0 * pi - AHEAD, begin, 0.0
+        left, at, skip, is_near = 2.0 * pi - AHEAD, begin, 0.0, False
         for _ in range(0 if found else SEARCHES):
             there, away, *results = search(at, True)
             left -= away if found else 0.0
             if not there or left <= 0.0:
                 break
             at += away
-            if found and away < 2.0 * AHEAD:  # roots without end, or one that is as good as triple: nothing new is near
+            is_near, was_near = bool(found) and away < NEAR, is_near
+            if found and away < 1.1 * AHEAD:  # roots without end: nothing new is near
                 skip = min(max(4.0 * skip, AHEAD), LONGEST)
                 at, left = at + skip, left - skip
             else:
+                if is_near and was_near:  # between two roots that nearly join the pose is as good as met
+                    found.pop()
                 skip = 0.0
                 keep(abs((at - reference - AHEAD + pi) % (2.0 * pi) - pi), results)
             moves = moves or skip == LONGEST
