@@ -24,7 +24,7 @@ from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
 from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
 from derive.kinematics.scan.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
-from derive.kinematics.scan.starts import is_narrow, is_new_length, is_point, next_number, of_length, place_of
+from derive.kinematics.scan.starts import POINTS, is_narrow, is_new_length, is_point, next_number, of_length, place_of
 from derive.kinematics.scan.tried import (
     AT,
     BEST_NOW,
@@ -208,7 +208,7 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
         of_length(lengths, _NUMBER, [real(f"{n}_{k}") for k in range(1, 1 + lengths)]) if lengths else _ZERO
         for n in ("length", "growth")
     ]
-    yield from better(_is_at(_SHORTENING), chosen[0])
+    yield from better(_is_at(_SHORTENING), chosen[0], sp.Gt(_NUMBER, POINTS))
     yield from newton_step(ends, direction)
     yield from shortest_step(ends, direction * chosen[1])
     yield Let(flag("is_shortest"), sp.And(_is_at(_SHORTENING), shortest_is_done()))

@@ -66,13 +66,13 @@ def trials_begun(place: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
     return {AT: place, BEST: place, _LAST: place, _LEAST: _MOST, _MOST_ROOM: _ZERO, **zeros}
 
 
-def better(is_shortest: sp.Basic, length: sp.Expr) -> Iterator[Let]:
-    """Whether a trial is the best so far: where the length is shortest, or where the least remains. From within reach
-    none goes beyond its end, where a residual of what is nearest may vanish, too.
+def better(is_shortest: sp.Basic, length: sp.Expr, may_leave: sp.Basic) -> Iterator[Let]:
+    """Whether a trial is the best so far: where the length is shortest, or where the least remains. may_leave: whether
+    it may go beyond the end of reach, where a residual of what is nearest may vanish, too.
     """
     size, is_less = real("size"), flag("is_less")
     yield Let(size, Select(is_shortest, length, sp.Abs(REMAINDER)))
-    stays = sp.Or(sp.Le(_MOST_ROOM, 0), sp.Gt(ROOM, 0), is_shortest)
+    stays = sp.Or(sp.Le(_MOST_ROOM, 0), sp.Gt(ROOM, 0), is_shortest, may_leave)
     yield Let(is_less, sp.And(sp.Lt(size, _LEAST), stays))
     yield Let(BEST_NOW, Select(is_less, AT, BEST))
     yield Let(LEAST_NOW, Select(is_less, size, _LEAST))

@@ -1431,7 +1431,8 @@ static softkin_status find_root(const void *machine, const double *given, double
     growth_3 = results_of_2[8];
     size = stage == 1 ? (number_of_start > 15 ? length_3 : (number_of_start > 12 ? length_2 : length_1))
         : fabs(remainder);
-    is_less = (size < least) && ((stage == 1) || (most_room <= 0.0) || (room_of_trial > 0.0));
+    is_less = (size < least) && ((stage == 1) || (most_room <= 0.0) || (number_of_start > 9)
+        || (room_of_trial > 0.0));
     best_now = is_less ? at : best;
     way_now = is_less ? real_of_direction*remainder/(fabs(rate) > 0.0 ? rate : 1e30) : 0.25*way;
     best_now_minus_way_now = best_now - way_now;

@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 461d6c2337b47fc5"
+    KEY = "ac6_rzryryrxryrz_j6offset 40f4fcc98c970756"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1937,7 +1937,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if stage == 1
                 else abs(remainder)
             )
-            is_less = (size < least) and ((stage == 1) or (most_room <= 0.0) or (room_of_trial > 0.0))
+            is_less = (size < least) and (
+                (stage == 1) or (most_room <= 0.0) or (number_of_start > 9) or (room_of_trial > 0.0)
+            )
             best_now = at if is_less else best
             way_now = real_of_direction * remainder / (rate if abs(rate) > 0.0 else 1e30) if is_less else 0.25 * way
             best_now_minus_way_now = best_now - way_now

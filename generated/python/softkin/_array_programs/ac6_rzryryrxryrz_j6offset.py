@@ -1838,7 +1838,9 @@ class ArrayPrograms(Programs):
                 select(number_of_start > 15, length_3, select(number_of_start > 12, length_2, length_1)),
                 absolute(remainder),
             )
-            is_less = (size < least) & ((stage == 1) | (most_room <= 0.0) | (room_of_trial > 0.0))
+            is_less = (size < least) & (
+                (stage == 1) | (most_room <= 0.0) | (number_of_start > 9) | (room_of_trial > 0.0)
+            )
             best_now = select(is_less, at, best)
             way_now = select(
                 is_less, real_of_direction * remainder / select(absolute(rate) > 0.0, rate, 1e30), 0.25 * way
