@@ -38,9 +38,8 @@ FAULTS: dict[str, tuple[str, str, str, str]] = {
     "repair of a rotation": (ELBOW, "softkin_rotation.h", r"<= 0\.0001", "<= 0.01"),
     "wide matrix": (PLATE, "softkin", r"factor\*system\[k\*width \+ j\]", "factor*system[k*width + i]"),
     "no exchange of rows": (PLATE, "softkin", r"determinant = -determinant;", "determinant *= 1.0;"),
-    "fewer trials": (SEARCHED, "softkin_constants.h", r"CELLS 72", "CELLS 7"),
-    "way along a curve": (SEARCHED, "softkin", r"is_curved \? s\*s : s;", "is_curved ? -s*s : s;"),
-    "tangents": (SEARCHED, "softkin", r"met < width \? met", "met < width ? -met"),
+    "one root of two": (SEARCHED, "softkin", r"of->start\] \+= results\[1\];", "of->start] += 2.0*results[1];"),
+    "farthest first": (SEARCHED, "softkin", r"away > one\.away", "away < one.away"),
     "one search alone": (SEARCHED, "softkin", r"return false;\n    \}\n  \}\n  return true;",
                          "return true;\n    }\n  }\n  return true;"),
 }  # fmt: skip
