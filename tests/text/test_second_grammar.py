@@ -165,6 +165,6 @@ def test_a_wrong_statement_is_left(wrong: str) -> None:
 def test_a_right_statement_is_not() -> None:
     """Nothing is left of a statement whose phrases are all known."""
     pieces()
-    right = "IF x THEN\ny := x + 2.0*f(a := x, b := -y);\nEND_IF"
+    right = "IF x THEN\ny := f(a := x, b := -y);\nEND_IF"
     short = abridged(f"METHOD PUBLIC Probe : BOOL\n{right}\nProbe := TRUE;\nEND_METHOD", KNOWN)
     assert short == "METHOD PUBLIC Probe : BOOL\n;\nEND_METHOD"

@@ -25,7 +25,7 @@ from derive.solver.unsolved import Unsolved
 from derive.witness import witness
 from tests.machines.collection import MACHINES as COLLECTION
 from tests.mechanisms import catalogue
-from tests.unit.form.chains import A1, A2, A3, A4, A5, AIMED, CHAINS, FULL, SIX
+from tests.unit.form.chains import A1, A2, A3, A4, A5, AIMED, CHAINS
 from tests.unit.form.link_frames import by_table, in_link_frames
 from tests.unit.form.rewording import reworded
 from tests.unit.form.test_chain import frame, in_words
@@ -78,11 +78,6 @@ REFUSED = {
     "a flange that leans": replace(CHAINS["SCARA"], chain=CHAINS["SCARA"].chain * Rx(sp.pi / 2)),
     "a tool beside the last of five axes": replace(
         CHAINS["five turns"], task=AIMED, chain=_BENT * Rx(A4) * Ty(35) * Ry(A5) * Tx(45)
-    ),
-    "six axes that pass each other": replace(
-        CHAINS["ball wrist"],
-        task=FULL,
-        chain=_BENT * Ty(90) * Rx(A4) * Tz(60) * Ty(20) * Ry(A5) * Tx(70) * Tz(15) * Rz(SIX[5]) * Tx(45),
     ),
     "a joint too many": replace(CHAINS["arm on a rail"], held=()),
 }
