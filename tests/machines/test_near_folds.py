@@ -96,6 +96,9 @@ def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
         found = [a for slot in solutions if slot.axes is not None for a in (slot.axes, *slot.others)]
         apart = [np.abs((np.subtract(a, axes) + 180.0) % 360.0 - 180.0).max() for a in found]
         assert min(apart) < max(0.1 * 10.0**decade, 5e-5), axes.tolist()
+        nearest = robot.forward(found[int(np.argmin(apart))])[0].position
+        place = robot.forward(tuple(axes))[0].position
+        assert np.linalg.norm(np.subtract(nearest, place)) < 1e-12 * np.linalg.norm(place), axes.tolist()
 
 
 def test_a_fold_hides_no_other_solution() -> None:
