@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -53,23 +54,22 @@ def test_solve_where_the_first_pivot_is_zero() -> None:
     assert solution.tolist() == [[2.0], [1.0]]
 
 
-@pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3))])
+@pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3)), np.ones((8, 8))])
 def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
     """A singular system has the determinant 0 and a solution of zeros."""
-    determinant, solution = solved(matrix, np.ones((3, 2)))
+    determinant, solution = solved(matrix, np.ones((len(matrix), 2)))
     assert determinant == 0.0
     assert not solution.any()
 
 
 def test_solve_what_is_no_number() -> None:
     """A system with NaN, an infinite or a huge number has the determinant 0 and a solution of zeros."""
-    for wrong in (math.nan, math.inf, -math.inf, 1e31):
-        for k in range(2):
-            tables = np.array([[2.0, 1.0], [1.0, -3.0]]), np.array([[1.0], [2.0]])
-            tables[k][1, 0] = wrong
-            determinant, solution = solved(*tables)
-            assert determinant == 0.0
-            assert not solution.any()
+    for wrong, k, size in product((math.nan, math.inf, -math.inf, 1e31), range(2), (2, 8)):
+        tables = np.eye(size) + 0.25, np.ones((size, 1))
+        tables[k][1, 0] = wrong
+        determinant, solution = solved(*tables)
+        assert determinant == 0.0
+        assert not solution.any()
 
 
 def test_make_rotation() -> None:

@@ -209,7 +209,7 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
         for n in ("length", "growth")
     ]
     yield from better(_is_at(_SHORTENING), chosen[0], sp.Gt(_NUMBER, POINTS))
-    yield from newton_step(ends, direction)
+    yield from newton_step(ends, direction, is_point(_WIDTH))
     yield from shortest_step(ends, direction * chosen[1])
     yield Let(flag("is_shortest"), sp.And(_is_at(_SHORTENING), shortest_is_done()))
     yield Let(real("shortest_now"), Select(flag("is_shortest"), BEST_NOW, _SHORTEST))

@@ -23,7 +23,7 @@ _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 
 
 def is_point(width: sp.Expr) -> sp.Expr:
-    """Whether a part is as narrow as rounding: there is no step in it."""
+    """Whether a part is as narrow as rounding: it has one trial, in its middle."""
     return sp.Le(width, sp.Float(_WIDTHS[0][0]))
 
 

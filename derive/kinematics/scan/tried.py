@@ -78,17 +78,22 @@ def better(is_shortest: sp.Basic, length: sp.Expr, may_leave: sp.Basic) -> Itera
     yield Let(LEAST_NOW, Select(is_less, size, _LEAST))
 
 
-def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr) -> Iterator[Let]:
-    """The step of Newton's method; one that does not lower the residual is shortened."""
+def newton_step(ends: tuple[sp.Expr, sp.Expr], direction: sp.Expr, is_point: sp.Basic) -> Iterator[Let]:
+    """The step of Newton's method; one that does not lower the residual is shortened.
+
+    A part that is a point has its only trial in the middle, and settles where the step leads: a straight wrist is told
+    from one that is bent by half the width of the part, of which rounding would choose the side.
+    """
     is_steep = sp.Gt(sp.Abs(RATE), 0)
     newton = direction * REMAINDER / Select(is_steep, RATE, _MOST)
     yield Let(WAY_NOW, Select(flag("is_less"), newton, _WAY / 4))
     yield Let(NEWTON_NEXT, inside(BEST_NOW - WAY_NOW, ends))
-    yield Let(SETTLED, Select(sp.And(flag("is_less"), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL)), NEWTON_NEXT, BEST_NOW))
+    stands = sp.Or(is_point, sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL))
+    yield Let(SETTLED, Select(sp.And(flag("is_less"), stands), NEWTON_NEXT, BEST_NOW))
 
 
 def newton_is_done(is_point: sp.Basic) -> sp.Basic:
-    """Whether Newton's method ends: there is no step in a part that is a point."""
+    """Whether Newton's method ends: a part that is a point has one trial."""
     return sp.Or(sp.Ge(TRIALS, _NEWTONS), sp.Le(sp.Abs(NEWTON_NEXT - AT), _STILL), is_point)
 
 

@@ -1438,7 +1438,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     best_now_minus_way_now = best_now - way_now;
     newton_place = best_now_minus_way_now < place_ ? place_
         : (best_now_minus_way_now > place_plus_width ? place_plus_width : best_now_minus_way_now);
-    settled = is_less && (fabs(at - newton_place) <= 1e-10) ? newton_place : best_now;
+    settled = is_less && ((width <= 1e-9) || (fabs(at - newton_place) <= 1e-10)) ? newton_place : best_now;
     least_now = is_less ? size : least;
     is_settled = (stage == 2) && ((width <= 1e-9) || (trials >= 5) || (fabs(at - newton_place) <= 1e-10));
     is_known = (fabs(settled - settled_1) <= 1e-12) || (fabs(settled - settled_2) <= 1e-12)

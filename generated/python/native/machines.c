@@ -180,7 +180,7 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 40f4fcc98c970756", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_rzryryrxryrz_j6offset 3160d7c541011efd", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
     {"ac6_threeparallel 7dfa04a432bd0f6c", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 5a4e37cb31d75fcd", &ac6_txtytzryrxrz_mechanism,

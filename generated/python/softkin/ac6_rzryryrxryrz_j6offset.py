@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 40f4fcc98c970756"
+    KEY = "ac6_rzryryrxryrz_j6offset 3160d7c541011efd"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1948,7 +1948,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 if best_now_minus_way_now < place
                 else (place_plus_width if best_now_minus_way_now > place_plus_width else best_now_minus_way_now)
             )
-            settled_ = newton_place if is_less and (abs(at - newton_place) <= 1e-10) else best_now
+            settled_ = newton_place if is_less and ((width <= 1e-9) or (abs(at - newton_place) <= 1e-10)) else best_now
             least_now = size if is_less else least
             is_settled = (stage == 2) and ((width <= 1e-9) or (trials >= 5) or (abs(at - newton_place) <= 1e-10))
             is_known = (

@@ -1851,7 +1851,9 @@ class ArrayPrograms(Programs):
                 place,
                 select(best_now_minus_way_now > place_plus_width, place_plus_width, best_now_minus_way_now),
             )
-            settled_ = select(is_less & (absolute(at - newton_place) <= 1e-10), newton_place, best_now)
+            settled_ = select(
+                is_less & ((width <= 1e-9) | (absolute(at - newton_place) <= 1e-10)), newton_place, best_now
+            )
             least_now = select(is_less, size, least)
             is_settled = (stage == 2) & ((width <= 1e-9) | (trials >= 5) | (absolute(at - newton_place) <= 1e-10))
             is_known = (
