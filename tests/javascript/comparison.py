@@ -22,7 +22,7 @@ SAME = 1e-12
 FRAME = 1e-11
 """Of two solutions of a singular pose, as a part of its size."""
 JOINED = 1e-2
-"""Two solutions are nearer (degrees, but for turns) at a multiple root. Rounding leaves a third of its digits, or half."""
+"""Two solutions are nearer (degrees, but for turns) at a multiple root: rounding leaves a third of its digits."""
 _MACHINES = 80
 """So many machines are kept with their answers: more than a mechanism has."""
 Answer = dict[str, Any]

@@ -68,8 +68,8 @@ The next root ahead is further away than this.
 ELSEWHERE = sp.Float("2.5")
 """All roots are found onward from so far ahead of the reference, which may be a root."""
 MOST_PASSES = 4000
-"""The passes of the search, at most: 30 to 140 at a random pose; of 5,400 poses at random, next to straight wrists and
-folded elbows 26 took more than 1,000, and none more than 1,484; an almost spherical wrist on a long arm took 1,808.
+"""The passes of the search, at most: 30 to 140 at a random pose; of 10,800 poses at random, next to straight wrists
+and folded elbows 44 took more than 1,000, and none more than 1,708; an almost spherical wrist on a long arm 1,808.
 """
 MOST_WHERE_ELIMINATED, COST_WHERE_ELIMINATED = 4000, 2
 """The same for joints that are eliminated, and what a stall costs: a start may lead to any root, and no sign of a step
