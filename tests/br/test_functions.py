@@ -143,11 +143,8 @@ def test_positions_and_rates(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_wire_frame(name: str) -> None:
     """At recorded poses at most sixteen edges, one of which ends at the tool where there is room for all; those of a
-    chain follow each other from the base; what has no pose is refused. One machine draws with more than its parameters.
+    chain follow each other from the base; what has no pose is refused.
     """
-    if name == "Softkin_RodPalletizer":
-        assert not hasattr(library(name), "wire_frame")
-        return
     machine, compared = Machine(name), 0
     for axes in recorded(name)[:16]:
         count, edges = machine.wire_frame(axes)
