@@ -293,5 +293,5 @@ def _axes_in_words(joints: Sequence[Joint]) -> str:
 
 
 def search(joint: Joint, *, where: Parameter) -> Search:
-    """Scan a joint for roots where the parameter is not zero; if it is zero, the closure has a closed form."""
+    """Search along a joint for roots where the parameter is not zero; if it is zero, the closure has a closed form."""
     return Search(joint, where)

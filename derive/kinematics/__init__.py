@@ -20,7 +20,7 @@ parameters: all inputs of a machine, and the setup program
 rates: forward-mode differentiation of statements
 refusals/: why a machine is refused
 sampling: samples of machines and axis values, for numerical decisions of the build; how often home finds a pose again
-scan/: a mechanism with a root search along one joint
+search/: a mechanism with a root search along one joint
 shared_names: where an input has the name of a derived value, the mechanism is derived again with another name
 solution: what is solved of a machine before programs are made, in the one order of the preparations
 """

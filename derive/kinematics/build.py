@@ -34,10 +34,10 @@ from derive.kinematics.measured.programs import Measured, measured_programs
 from derive.kinematics.parameters import machine_parameters, setup_program
 from derive.kinematics.refusals.no_pose import near_home
 from derive.kinematics.sampling import sample_machine, with_share
-from derive.kinematics.scan.derivations import Scanned, from_joints, trial_on_branch
-from derive.kinematics.scan.inverse import branch_statements, search_given
-from derive.kinematics.scan.margins import DETERMINANT, determinant_margin, margin_statements
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.search.derivations import Searched, from_joints, trial_on_branch
+from derive.kinematics.search.inverse import branch_statements, search_given
+from derive.kinematics.search.margins import DETERMINANT, determinant_margin, margin_statements
+from derive.kinematics.search.programs import GOAL
 from derive.kinematics.shared_names import SharedName, refuse_names, refuse_shared_names, with_free_names
 from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
@@ -62,9 +62,9 @@ def build(mechanism: Mechanism) -> Kinematics:
 
 def _built(mechanism: Mechanism) -> Kinematics:
     solution = solve_machine(mechanism)
-    if mechanism.nominal and isinstance(solution, Scanned):
+    if mechanism.nominal and isinstance(solution, Searched):
         raise DescriptionError("an arm whose joint is searched for roots has no programs with deviations yet")
-    return _scanned(solution) if isinstance(solution, Scanned) else _closed_form(solution)
+    return _searched_form(solution) if isinstance(solution, Searched) else _closed_form(solution)
 
 
 def _closed_form(solved: Solved) -> Kinematics:
@@ -124,7 +124,7 @@ def _samples(
     return samples | constants
 
 
-def _scanned(both: Scanned) -> Kinematics:
+def _searched_form(both: Searched) -> Kinematics:
     """The programs of a chain that has no closed form, or has one only where a parameter is zero: one joint is
     searched, and the determinant of the Jacobian is the margin.
     """

@@ -40,7 +40,7 @@ from derive.ir.primitives import Atan2, Root, Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Unit, Why, about, about_machine
 from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE, cosine, real, sine
-from derive.kinematics.scan.guards import without_wrist
+from derive.kinematics.search.guards import without_wrist
 from derive.lowering.passes import DERIVED, NOTHING, applied
 from derive.plate.passive import commanded, passive_statements, renamed_in
 from derive.solver.solve import Derivation, solve

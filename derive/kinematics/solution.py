@@ -27,8 +27,8 @@ from derive.kinematics.differential import jacobian_rows
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_pose
 from derive.kinematics.margins import Factor, factor_of
-from derive.kinematics.scan.choice import solve_searched, with_search
-from derive.kinematics.scan.derivations import Scanned
+from derive.kinematics.search.choice import solve_searched, with_search
+from derive.kinematics.search.derivations import Searched
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
@@ -75,7 +75,7 @@ def _of_loops(mechanism: Mechanism, joint: Joint) -> Iterator[Factor]:
         yield Factor(f"lever_{loop.moved.name}", by_moved / size(mechanism, loop, loop.moved))
 
 
-Solution = Solved | Scanned
+Solution = Solved | Searched
 
 
 def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:

@@ -23,7 +23,7 @@ from derive.kinematics.branches.assignment import Assignment, with_branch_signs
 from derive.kinematics.forward import solve_for_position
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.margins import Factor
-from derive.kinematics.scan.derivations import Scanned
+from derive.kinematics.search.derivations import Searched
 from derive.kinematics.solution import Solution
 from derive.plate.passive import solve_passive
 from derive.solver.parallel_axes import Sum
@@ -111,7 +111,7 @@ class Derived:
 
 def derived_of(solution: Solution) -> Derived:
     """The derivation of a machine, from its solution."""
-    if isinstance(solution, Scanned):
+    if isinstance(solution, Searched):
         return _searched(solution)
     mechanism = solution.mechanism
     routes = [_route("Inverse kinematics", solution.inverse, solution.assignments)]
@@ -121,7 +121,7 @@ def derived_of(solution: Solution) -> Derived:
     return Derived(mechanism, tuple(routes), _forward(mechanism), solution.factors)
 
 
-def _searched(both: Scanned) -> Derived:
+def _searched(both: Searched) -> Derived:
     mechanism, search = both.mechanism, both.mechanism.search
     assert search is not None
     title = f"A trial: {search.joint.name} is known"

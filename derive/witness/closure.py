@@ -298,7 +298,7 @@ def _positive(described: Mechanism, named: Symbols, machine: Mechanism, labels: 
 
 
 def _indicators(described: Mechanism, named: Symbols, machine: Mechanism, labels: Symbols) -> list[Term]:
-    """The branch indicators: positive is byte 1. NaN, which no check compares, where only a scan tells the solutions
+    """The branch indicators: positive is byte 1. NaN, which no check compares, where only a search tells the solutions
     apart.
     """
     own = {branch.name: branch for branch in described.branches}

@@ -26,7 +26,7 @@ from derive.kinematics.branches.assembly import assembled
 from derive.kinematics.forward import derivation_at_axes, pose_at_axes
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.parameters import machine_scale
-from derive.kinematics.scan.derivations import solve_both
+from derive.kinematics.search.derivations import solve_both
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 

@@ -149,7 +149,7 @@ def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Mac
             continue
         first = next(machine.robot.parameters[p.name] for p in machine.mechanism.parameters if p.role is Role.LENGTH)
         values = machine.draw(1, np.random.default_rng(5))
-        moving = [i for i in _moving(machine) if machine.closure.angles[i]]
+        moving = [i for i in _moving(machine) if machine.closure.turning[i]]
         turning = [i for i in moving if turns_the_flange(machine, values, i)]
         shifts = turning[-1] != moving[-1]
         fixed, away = on_the_axis(machine, values, turning[-1])

@@ -62,9 +62,18 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_NutatingTable_BC": {"pivot_x": 8.0, "pivot_z": 30.0, "tool_length": 110.0, "nutation": 50.0},
     "Softkin_NutatingHeadTable_BC": {"head_offset": 30.0, "pivot_length": 250.0, "nutation": 45.0},
     "Softkin_NutatingTable_AC": {"pivot_y": -12.0, "pivot_z": 35.0, "tool_length": 115.0, "nutation": 45.0},
+    "Softkin_Painter": {
+        "base_height": 520.0, "shoulder_offset": 190.0, "link_length_2": 800.0, "link_length_3": 920.0,
+        "flange_length": 140.0, "wrist_angle": 62.0,
+    },
     "Softkin_Palletizer": {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,
+    },
+    "Softkin_CylinderPalletizer": {
+        "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
+        "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_2_x": -420.0, "cylinder_2_z": 60.0,
+        "cylinder_eye": 380.0, "cylinder_3_x": -300.0, "cylinder_3_z": -450.0, "lever_length": 250.0,
     },
     "Softkin_Excavator": {
         "boom_foot_x": 300.0, "boom_foot_z": 800.0, "boom_length": 1800.0, "stick_length": 1100.0,

@@ -13,8 +13,8 @@ from derive.kinematics.branches.assembly import with_derived_assembly
 from derive.kinematics.inverse import solve_pose
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
-from derive.kinematics.scan.choice import with_search
-from derive.kinematics.scan.derivations import solve_both
+from derive.kinematics.search.choice import with_search
+from derive.kinematics.search.derivations import solve_both
 from derive.kinematics.solution import prepared
 from derive.report.derived import equations_of
 from derive.solver.solve import Step

@@ -132,7 +132,7 @@ def test_a_ball_joint_that_swings_too_far(name: str) -> None:
 
 
 def test_the_joint_along_which_is_searched() -> None:
-    """A root search without a root names the joint that was scanned."""
+    """A root search without a root names the joint that was searched."""
     robot = nominal(next(m for _, m in catalogue() if m.search is not None), j6_offset_x=40.0)
     found = said(robot, (3000.0, 0.0, 500.0))
     assert found == (Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0, 0, 0.0)

@@ -22,8 +22,8 @@ from derive.emit.javascript.program import function_lines, refusals_of, setup_li
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
-from derive.kinematics.scan.programs import START
-from derive.kinematics.scan.search import ONWARD
+from derive.kinematics.search.find import ONWARD
+from derive.kinematics.search.programs import START
 from derive.report.reasons import reasons_of, reasons_of_rotation
 
 name, title, bound = "javascript", "JavaScript", ""

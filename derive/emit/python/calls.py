@@ -9,8 +9,8 @@ from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Call, Program
 from derive.ir.symbols import is_condition
-from derive.kinematics.scan.programs import START
-from derive.kinematics.scan.search import ONWARD
+from derive.kinematics.search.find import ONWARD
+from derive.kinematics.search.programs import START
 
 FOUND = "found"
 """The result of a shared program: its values or, on plain numbers, the status of its refusal."""

@@ -20,7 +20,7 @@ from sympy.core.relational import Relational
 from derive.equations.problem import Conditioning
 from derive.ir.constants import BOUNDARY, CONVERGED, DOUBTFUL
 from derive.ir.passes import depending_on, normalise
-from derive.ir.primitives import Select
+from derive.ir.primitives import Select, larger
 from derive.ir.program import Call, Let, Program, Require, Statement, Status
 from derive.ir.reason import Why, about_joint
 from derive.ir.symbols import BOUND_OF, cosine, flag, names_in, real, sine
@@ -198,6 +198,13 @@ def without_meeting(program: Program) -> Program:
 
 
 def _joined(lengths: Sequence[Require], refusals: Sequence[Require]) -> list[Require]:
-    """The refusals, with the conditions on lengths in the first other one: that digits are lost is no other reason."""
+    """The refusals, with the conditions on lengths in the first other one: that digits are lost is no other reason.
+    Nothing is missing then beyond rounding.
+    """
+    if not lengths:
+        return list(refusals)
     first, *others = refusals or lengths[:1]
-    return [replace(first, condition=sp.And(first.condition, *(r.condition for r in lengths))), *others]
+    reason, condition = first.reason, sp.And(first.condition, *(r.condition for r in lengths))
+    if reason is not None and reason.amount is not None:
+        reason = replace(reason, amount=larger(reason.amount, sp.Integer(0)))
+    return [replace(first, condition=condition, reason=reason), *others]

@@ -2720,7 +2720,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double machine_scale = p->a1 + p->a2 + p->d4; /* characteristic length of the machine */
   const double length_26 = sqrt(p->a3*p->a3 + p->d4*p->d4);
   const double length_26_or_1 = fabs(length_26) > 0.0 ? length_26 : 1.0;
-  const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to scan A6 for a root */
+  const bool searched = fabs(p->j6_offset_x) > 0.0; /* whether to search along A6 */
   const double a1_squared = p->a1*p->a1;
   const double a2_plus_length_26 = p->a2 + length_26;
   const double a2_plus_length_26_squared = a2_plus_length_26*a2_plus_length_26;

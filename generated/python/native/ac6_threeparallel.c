@@ -780,8 +780,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!((met || (length_difference_q2 <= 1e-11)) && (met || (fabs(cos_q3) <= k->bound_of_cos_q3)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
-        : fabs(fabs(k->a2) - fabs(k->a3)) - reach), 0);
+        ((reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
+        : fabs(fabs(k->a2) - fabs(k->a3)) - reach) > 0.0
+        ? (reach - k->machine_scale > fabs(fabs(k->a2) - fabs(k->a3)) - reach ? reach - k->machine_scale
+        : fabs(fabs(k->a2) - fabs(k->a3)) - reach) : 0.0), 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);

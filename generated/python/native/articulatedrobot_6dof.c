@@ -832,8 +832,10 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   /* q3: out of reach */
   if (!((met || (length_difference_q2 <= 1e-11)) && (met || (fabs(cos_swing_q3) <= 1.0000000000005)))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A3: out of reach", "u",
-        (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
-        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach), 0);
+        ((reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
+        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach) > 0.0
+        ? (reach - k->a2_plus_effective_q3 > fabs(k->a2_minus_effective_q3) - reach ? reach
+        - k->a2_plus_effective_q3 : fabs(k->a2_minus_effective_q3) - reach) : 0.0), 0);
   }
   axes[0] = (met ? found_a1 : axis_a1);
   axes[1] = (met ? found_a2 : axis_a2);

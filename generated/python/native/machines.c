@@ -12,6 +12,7 @@
 #include "caxis.h"
 #include "caxis_tool.h"
 #include "crane.h"
+#include "cylinderpalletizer.h"
 #include "delta_c.h"
 #include "delta_p3c_type3.h"
 #include "dualscara.h"
@@ -40,6 +41,7 @@
 #include "p2x_type1.h"
 #include "p2x_type2.h"
 #include "p2y.h"
+#include "painter.h"
 #include "palletizer.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
@@ -86,6 +88,8 @@ softkin_regular bipod_rotary_regular;
 softkin_regular_all bipod_rotary_regular_all;
 softkin_regular caxis_regular;
 softkin_regular caxis_tool_regular;
+softkin_regular cylinderpalletizer_regular;
+softkin_regular_all cylinderpalletizer_regular_all;
 softkin_regular delta_c_regular;
 softkin_regular_all delta_c_regular_all;
 softkin_regular delta_p3c_type3_regular;
@@ -130,6 +134,8 @@ softkin_regular p2x_type1_regular;
 softkin_regular_all p2x_type1_regular_all;
 softkin_regular p2x_type2_regular;
 softkin_regular p2y_regular;
+softkin_regular painter_regular;
+softkin_regular_all painter_regular_all;
 softkin_regular palletizer_regular;
 softkin_regular_all palletizer_regular_all;
 softkin_regular pcc_regular;
@@ -180,12 +186,12 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 3160d7c541011efd", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 7dfa04a432bd0f6c", &ac6_threeparallel_mechanism,
+    {"ac6_rzryryrxryrz_j6offset 20f7cb6362c3dc66", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_threeparallel 8a07a3647a013fa0", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 5a4e37cb31d75fcd", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof c12a61cf78d2bd96", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof 5158e70dc4880123", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
     {"bipod_c e6485194ac775402", &bipod_c_mechanism, {bipod_c_regular, bipod_c_regular_all}},
     {"bipod_rotary 2fee8fd2d0b50352", &bipod_rotary_mechanism,
@@ -193,6 +199,8 @@ const softkin_native softkin_machines[] = {
     {"caxis 6aff182d3865f2af", &caxis_mechanism, {caxis_regular, NULL}},
     {"caxis_tool 11e28e07443f80e4", &caxis_tool_mechanism, {caxis_tool_regular, NULL}},
     {"crane e2396431da69793e", &crane_mechanism, {NULL, NULL}},
+    {"cylinderpalletizer 4ce4d25b27eeb721", &cylinderpalletizer_mechanism,
+        {cylinderpalletizer_regular, cylinderpalletizer_regular_all}},
     {"delta_c ec39d85fe1084191", &delta_c_mechanism, {delta_c_regular, delta_c_regular_all}},
     {"delta_p3c_type3 72c22f8482557c4c", &delta_p3c_type3_mechanism,
         {delta_p3c_type3_regular, delta_p3c_type3_regular_all}},
@@ -230,12 +238,13 @@ const softkin_native softkin_machines[] = {
     {"p2x_type1 4470745ab5555d52", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
     {"p2x_type2 cfb1e2e1acec7873", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y 30c921779399fe62", &p2y_mechanism, {p2y_regular, NULL}},
+    {"painter e48256c32bf68996", &painter_mechanism, {painter_regular, painter_regular_all}},
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr 476a397100e31d56", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"pos_rrr 3a83fecab7ffdb11", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
     {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 339819f261d7e7aa", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from softkin.caxis import CAxis
     from softkin.caxis_tool import CAxisTool
     from softkin.crane import Crane
+    from softkin.cylinderpalletizer import CylinderPalletizer
     from softkin.delta_c import DeltaC
     from softkin.delta_p3c_type3 import DeltaP3CType3
     from softkin.dualscara import DualScara
@@ -71,6 +72,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type1 import P2XType1
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
+    from softkin.painter import Painter
     from softkin.palletizer import Palletizer
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
@@ -124,6 +126,7 @@ __all__ = [
     "ConfigurationByte",
     "Coupled",
     "Crane",
+    "CylinderPalletizer",
     "DeltaC",
     "DeltaP3CType3",
     "Diagnosis",
@@ -158,6 +161,7 @@ __all__ = [
     "P2CType2",
     "P2XType1",
     "P2XType2",
+    "Painter",
     "Palletizer",
     "Parameter",
     "Planar3RRR",
@@ -215,6 +219,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_CAxis": ("caxis", "CAxis"),
     "Kin_CAxis_Tool": ("caxis_tool", "CAxisTool"),
     "Kin_Crane": ("crane", "Crane"),
+    "Softkin_CylinderPalletizer": ("cylinderpalletizer", "CylinderPalletizer"),
     "Softkin_Delta_C": ("delta_c", "DeltaC"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
     "Softkin_DualScara": ("dualscara", "DualScara"),
@@ -243,6 +248,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
+    "Softkin_Painter": ("painter", "Painter"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),

@@ -93,7 +93,7 @@ class Constants:
         machine_scale = a1 + a2 + d4  # characteristic length of the machine
         length_26 = sqrt(a3 * a3 + d4 * d4)
         length_26_or_1 = length_26 if abs(length_26) > 0.0 else 1.0
-        searched = abs(j6_offset_x) > 0.0  # whether to scan A6 for a root
+        searched = abs(j6_offset_x) > 0.0  # whether to search along A6
         a1_squared = a1 * a1
         a2_plus_length_26 = a2 + length_26
         a2_plus_length_26_squared = a2_plus_length_26 * a2_plus_length_26
@@ -128,7 +128,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 3160d7c541011efd"
+    KEY = "ac6_rzryryrxryrz_j6offset 20f7cb6362c3dc66"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 51 additions, 59 multiplications, 0 divisions, 0 square roots, 13 sines
-    inverse: 83 additions, 76 multiplications, 11 divisions, 5 square roots, 6 sines
-    inverse, all 8 branches: 534 additions, 366 multiplications, 50 divisions, 17 square roots, 30 sines
+    inverse: 89 additions, 76 multiplications, 11 divisions, 5 square roots, 6 sines
+    inverse, all 8 branches: 582 additions, 366 multiplications, 50 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 108146 additions, 136778 multiplications, 5852 divisions, 1850
     square roots, 7706 sines
@@ -111,7 +111,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 7dfa04a432bd0f6c"
+    KEY = "ac6_threeparallel 8a07a3647a013fa0"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1162,7 +1162,7 @@ class Ac6ThreeParallel(Mechanism):
             met, found_a1, found_a2, found_a3, found_a4, found_a5, found_a6 = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         # q3: out of reach
         if not ((met or (length_difference_q2 <= 1e-11)) and (met or (abs(cos_q3) <= bound_of_cos_q3))):
-            missing = max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale)
+            missing = max(0.0, max(abs(abs(a2) - abs(a3)) - reach, reach - machine_scale))
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (
             (found_a1 if met else axis_a1),

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 59 additions, 74 multiplications, 0 divisions, 0 square roots, 14 sines
-    inverse: 89 additions, 93 multiplications, 13 divisions, 6 square roots, 6 sines
-    inverse, all 8 branches: 505 additions, 390 multiplications, 56 divisions, 17 square roots, 34 sines
+    inverse: 93 additions, 93 multiplications, 13 divisions, 6 square roots, 6 sines
+    inverse, all 8 branches: 537 additions, 390 multiplications, 56 divisions, 17 square roots, 34 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
     square roots, 7707 sines
@@ -112,7 +112,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof c12a61cf78d2bd96"
+    KEY = "articulatedrobot_6dof 5158e70dc4880123"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1243,7 +1243,7 @@ class ArticulatedRobot6DOF(Mechanism):
         if not (
             (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
         ):
-            missing = max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3)
+            missing = max(0.0, max(abs(a2_minus_effective_q3) - reach, reach - a2_plus_effective_q3))
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return (
             (found_a1 if met else axis_a1),

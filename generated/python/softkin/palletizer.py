@@ -1125,7 +1125,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             (met or (length_difference_a2 <= 1e-11))
             and (met or (abs(cos_swing_a3_from_a2) <= bound_of_cos_swing_a3_from_a2))
         ):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(
+                0.0, max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            )
             return Diagnosis(Status.UNREACHABLE, "a3_from_a2: out of reach [u]", missing)
         return (
             (found_a1 if met else axis_a1),

@@ -24,8 +24,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
-    inverse: 50 additions, 45 multiplications, 8 divisions, 4 square roots, 3 sines
-    inverse, all 4 branches: 175 additions, 140 multiplications, 24 divisions, 9 square roots, 10 sines
+    inverse: 54 additions, 45 multiplications, 8 divisions, 4 square roots, 3 sines
+    inverse, all 4 branches: 191 additions, 140 multiplications, 24 divisions, 9 square roots, 10 sines
     a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
     square roots, 4317 sines
     steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
@@ -101,7 +101,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 476a397100e31d56"
+    KEY = "pos_rrr 3a83fecab7ffdb11"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -983,7 +983,7 @@ class PosRRR(OffsetKinematics):
         if not (
             (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
         ):
-            missing = max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2)
+            missing = max(0.0, max(abs(a2_minus_effective_q3_2) - reach, reach - a2_plus_effective_q3_2))
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 
@@ -1299,7 +1299,7 @@ class PosRRR(OffsetKinematics):
         if not (
             (met or (length_difference_q2 <= 1e-11)) and (met or (-1.0000000000005 <= cos_swing_q3 <= 1.0000000000005))
         ):
-            missing = max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3)
+            missing = max(0.0, max(abs(a2 - effective_q3) - reach, -a2_minus_reach - effective_q3))
             return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
         return ((found_a1 if met else axis_a1), (found_a2 if met else axis_a2), (found_a3 if met else axis_a3))
 

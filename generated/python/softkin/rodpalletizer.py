@@ -1709,7 +1709,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             (met or (length_difference_b <= 1e-11))
             and (met or (abs(cos_swing_c_from_b) <= bound_of_cos_swing_c_from_b))
         ):
-            missing = max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            missing = max(
+                0.0, max(abs(link_length_1_minus_link_length_2) - reach, reach - link_length_1_plus_link_length_2)
+            )
             return Diagnosis(Status.UNREACHABLE, "c_from_b: out of reach [u]", missing)
         return (
             (found_a1 if met else axis_a1),

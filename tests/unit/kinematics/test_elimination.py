@@ -17,12 +17,12 @@ from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.sampling import machine_at
-from derive.kinematics.scan.derivations import solve_both
-from derive.kinematics.scan.elimination.line import Move, rotation, shift, turn
-from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
-from derive.kinematics.scan.programs import START
-from derive.kinematics.scan.search import FIRST, LONGEST
-from derive.kinematics.scan.wave import FIFTH, NOISE, names_of, wave_program
+from derive.kinematics.search.derivations import solve_both
+from derive.kinematics.search.elimination.line import Move, rotation, shift, turn
+from derive.kinematics.search.find import FIRST, LONGEST
+from derive.kinematics.search.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
+from derive.kinematics.search.programs import START
+from derive.kinematics.search.wave import FIFTH, NOISE, names_of, wave_program
 from derive.mechanisms import kin_ac6_rzryryrxryrz_j6offset as arm
 from derive.witness import witness
 from derive.witness.onward import every_root

@@ -22,7 +22,7 @@ from derive.ir.symbols import Names, flag, real
 from derive.ir.verify import BrokenProgram
 from derive.kinematics.build import build
 from derive.kinematics.rates import Rates
-from derive.kinematics.scan.slopes import slope_name, with_slopes
+from derive.kinematics.search.slopes import slope_name, with_slopes
 from tests.unit.kinematics.machine import machine
 
 PROGRAM = limits_of_axis()

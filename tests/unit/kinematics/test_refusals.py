@@ -29,8 +29,8 @@ from derive.kinematics import bundle, shared_names, solution
 from derive.kinematics.build import build
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.scan import choice, derivations, margins
-from derive.kinematics.scan.choice import with_search
+from derive.kinematics.search import choice, derivations, margins
+from derive.kinematics.search.choice import with_search
 from derive.kinematics.solution import prepared
 from derive.live import _refuse_another_runtime
 from derive.report import self_test

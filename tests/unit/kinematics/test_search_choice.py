@@ -9,7 +9,7 @@ from derive.description.mechanism import Mechanism, Parameter, Task, Turning, br
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.kinematics.build import build
-from derive.kinematics.scan.choice import with_search
+from derive.kinematics.search.choice import with_search
 from derive.solver.unsolved import Undetermined
 from derive.witness import witness
 from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR

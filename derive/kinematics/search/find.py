@@ -22,10 +22,10 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
-from derive.kinematics.scan.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
-from derive.kinematics.scan.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
-from derive.kinematics.scan.starts import POINTS, is_narrow, is_new_length, is_point, next_number, of_length, place_of
-from derive.kinematics.scan.tried import (
+from derive.kinematics.search.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
+from derive.kinematics.search.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
+from derive.kinematics.search.starts import POINTS, is_narrow, is_new_length, is_point, next_number, of_length, place_of
+from derive.kinematics.search.tried import (
     AT,
     BEST_NOW,
     LEAST_NOW,
@@ -41,7 +41,7 @@ from derive.kinematics.scan.tried import (
     trials_go_on,
     turned_by_a_sixth,
 )
-from derive.kinematics.scan.twins import (
+from derive.kinematics.search.twins import (
     HAS_TWIN,
     TWIN,
     TWO_WAYS,

@@ -9,8 +9,8 @@ import numpy as np
 import sympy as sp
 
 from derive.ir.interpret import Array, evaluate
-from derive.kinematics.scan.elimination.line import SIZE, Move, axis_line
-from derive.kinematics.scan.elimination.ring import Fixed, Place, Ring
+from derive.kinematics.search.elimination.line import SIZE, Move, axis_line
+from derive.kinematics.search.elimination.ring import Fixed, Place, Ring
 
 Values = Mapping[str, Array]
 

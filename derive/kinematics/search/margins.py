@@ -28,8 +28,8 @@ from derive.kinematics.differential import scaled_entries, solved_entries
 from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
-from derive.kinematics.scan.derivations import SEARCHED, Scanned, named_apart, searched_flag, trial_on_branch, wanted
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.search.derivations import SEARCHED, Searched, named_apart, searched_flag, trial_on_branch, wanted
+from derive.kinematics.search.programs import GOAL
 from derive.work import stage
 
 DETERMINANT = real("determinant")
@@ -37,7 +37,7 @@ _SAMPLES = 64
 
 
 @stage("the distance from singular poses")
-def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
+def margin_statements(both: Searched) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
     """The statements at given axis values, and `branch_<name>` of every branch."""
     mechanism = both.mechanism
     statements: list[Statement] = [*searched_flag(both), *both.forward.statements]
@@ -64,19 +64,19 @@ def margin_statements(both: Scanned) -> tuple[tuple[Statement, ...], tuple[Let, 
     return tuple(statements), (*found, _crossing_margin(both, scaled, margins))
 
 
-def _solved(both: Scanned) -> Iterator[tuple[str, Inverse, tuple[Assignment, ...]]]:
+def _solved(both: Searched) -> Iterator[tuple[str, Inverse, tuple[Assignment, ...]]]:
     """The derivations, each with the word that its names end in, and with its branches."""
     if both.closed is not None:
         yield "closed", both.closed, both.closed_branches
     yield "tried", both.trial, both.trial_branches
 
 
-def _on_either(both: Scanned, tried: sp.Expr, closed: sp.Expr | None) -> sp.Expr:
+def _on_either(both: Searched, tried: sp.Expr, closed: sp.Expr | None) -> sp.Expr:
     """The value where the joint is searched, and that of the closed form where it is not."""
     return tried if both.closed is None or closed is None else Select(SEARCHED, tried, closed)
 
 
-def _indicators(both: Scanned) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
+def _indicators(both: Searched) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
     """The statements for, and the indicators of, the branches that no step decides."""
     lets, indicators = named_trigonometry(
         both.mechanism, [with_fixed_names(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
@@ -84,7 +84,7 @@ def _indicators(both: Scanned) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
     return tuple(lets), tuple(indicators)
 
 
-def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
+def _crossing_margin(both: Searched, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
     crossing = next(b for b in both.mechanism.branches if b.is_crossing)
     slope = _orientation(both) * determinant
     for a in both.trial_branches:
@@ -93,7 +93,7 @@ def _crossing_margin(both: Scanned, determinant: sp.Expr, margins: dict[str, dic
 
 
 @stage("the distance from singular poses")
-def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
+def determinant_margin(both: Searched) -> tuple[tuple[Statement, ...], sp.Expr]:
     """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales
     of the closed steps.
     """
@@ -104,7 +104,7 @@ def determinant_margin(both: Scanned) -> tuple[tuple[Statement, ...], sp.Expr]:
     return (*lets, system), DETERMINANT * _determinant_scale(both)
 
 
-def _determinant_scale(both: Scanned) -> sp.Expr:
+def _determinant_scale(both: Searched) -> sp.Expr:
     if both.closed is None:
         return sp.Integer(1)
     scale = sp.Mul(*[a.determinant.scale for a in both.closed_branches])
@@ -113,7 +113,7 @@ def _determinant_scale(both: Scanned) -> sp.Expr:
     return SCALE ** len(both.mechanism.task.position) / scale
 
 
-def margins_wanted(both: Scanned) -> list[sp.Expr]:
+def margins_wanted(both: Searched) -> list[sp.Expr]:
     """The scaled margins of all branches at the joints, each positive on the wanted branch."""
     mechanism = both.mechanism
     functions = {f(j.symbol): g(j.symbol) for j in mechanism.joints for f, g in ((cosine, sp.cos), (sine, sp.sin))}
@@ -136,7 +136,7 @@ def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
     return bool(sp.sympify(branch.indicator).subs(gone) == 0)
 
 
-def _orientation(both: Scanned) -> int:
+def _orientation(both: Searched) -> int:
     """+1 where the slope of the residual has the sign of det J over the determinants of the steps, else -1. All poses
     must agree.
     """
@@ -152,14 +152,14 @@ def _orientation(both: Scanned) -> int:
     lets = [Let(real(f"margin_{n}"), v) for n, v in trial.items()]
     statements = (*derivation_at_axes(mechanism, both.trial, both.forward), *determinant, *lets)
     outputs = [Output("slope", scaled * sp.Mul(*[let.name for let in lets]))]
-    values, _ = run(normalise("orientation_of_the_scan", statements, outputs), {**machine, **axes})
+    values, _ = run(normalise("orientation_of_the_search", statements, outputs), {**machine, **axes})
     signs = np.unique(np.sign(values["slope"] * slope))
     if len(signs) != 1:
         raise BrokenProgram("the slope of the residual is not det J over the determinants of the steps")
     return int(signs[0])
 
 
-def _measured_slope(both: Scanned, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+def _measured_slope(both: Searched, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
     """The slope of the residual at sampled axes, by a central difference along the searched joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None

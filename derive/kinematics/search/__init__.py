@@ -6,6 +6,7 @@ it may import the folders from `ir` to `optimize`.
 choice: the choice of the joint that is searched
 derivations: the closed form and the trial, and the branches of their steps
 elimination/: six-axis arms of any shape, whose other joints follow from linear equations
+find: one loop, each pass of which makes one step of what the search is at
 guards: the conditions under which a trial is within reach
 inverse: the inverse: closed form and search in one program
 margins: the margins
@@ -13,7 +14,6 @@ parts: a step around the circle on which the wave does not vanish
 product: the residual of a trial multiplied over the signs of all its roots
 programs: a trial, the joints that it gives, a step of all joints on the closure, and whether they are on the branch
 samples: poses of random machines, by which decisions are made
-search: one loop, each pass of which makes one step of what the search is at
 slopes: every value of a program, with its derivative by one input
 starts: the starts in a part of the circle in which the wave may vanish
 tried: the trials in a part: the shortest length, the least residual next to a start

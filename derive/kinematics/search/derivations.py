@@ -1,4 +1,4 @@
-"""A mechanism with a root search: closed form where a parameter is zero, a scan along one joint where it is not.
+"""A mechanism with a root search: closed form where a parameter is zero, a search along one joint where it is not.
 
 Both derivations are parts of one program. Names of the closed form end in `_closed`, names of a trial in `_tried`.
 Branches are two-root steps of both derivations, as everywhere. A branch that no step of the trial decides is read off
@@ -23,11 +23,11 @@ from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, f
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose, without_steps
-from derive.kinematics.scan.elimination.equations import Equations, equations_of
-from derive.kinematics.scan.elimination.order import elimination_of
-from derive.kinematics.scan.guards import conditions_of, guards_of, least, room_of
-from derive.kinematics.scan.programs import Trial, trial_of, with_goal
-from derive.kinematics.scan.slopes import slope_name, with_slopes
+from derive.kinematics.search.elimination.equations import Equations, equations_of
+from derive.kinematics.search.elimination.order import elimination_of
+from derive.kinematics.search.guards import conditions_of, guards_of, least, room_of
+from derive.kinematics.search.programs import Trial, trial_of, with_goal
+from derive.kinematics.search.slopes import slope_name, with_slopes
 from derive.work import stage
 
 SEARCHED = flag("searched")
@@ -38,7 +38,7 @@ furthest from its folds, and turns by a sixth up to c = 0.85.
 
 
 @dataclass(frozen=True)
-class Scanned:
+class Searched:
     """Both derivations of a mechanism with a root search, and the branches of their steps."""
 
     mechanism: Mechanism
@@ -55,8 +55,8 @@ class Scanned:
 
 
 @stage("the root search")
-def solve_both(mechanism: Mechanism) -> Scanned:
-    """Solve the closure without the parameter that needs a scan, and with the scanned joint known."""
+def solve_both(mechanism: Mechanism) -> Searched:
+    """Solve the closure without the parameter that needs a search, and with the searched joint known."""
     assert mechanism.search is not None
     forward = pose_at_axes(mechanism)
     if mechanism.search.is_eliminated:
@@ -71,10 +71,10 @@ def solve_both(mechanism: Mechanism) -> Scanned:
         )
     found, asked, unnamed = steps_and_rest(mechanism, trial, forward)
     refuse_unnamed(unnamed)
-    return Scanned(mechanism, forward, closed, closed_branches, trial, found, asked)
+    return Searched(mechanism, forward, closed, closed_branches, trial, found, asked)
 
 
-def _by_elimination(mechanism: Mechanism, forward: Forward) -> Scanned:
+def _by_elimination(mechanism: Mechanism, forward: Forward) -> Searched:
     """A trial without steps, and the elimination that takes their place."""
     assert mechanism.search is not None
     elimination = elimination_of(mechanism, mechanism.search.joint)
@@ -82,7 +82,7 @@ def _by_elimination(mechanism: Mechanism, forward: Forward) -> Scanned:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, the other joints are not eliminated")
     trial = without_steps(mechanism, mechanism.search.joint)
     _, asked, _ = steps_and_rest(mechanism, trial, forward)
-    return Scanned(mechanism, forward, None, (), trial, (), asked, equations_of(mechanism, elimination))
+    return Searched(mechanism, forward, None, (), trial, (), asked, equations_of(mechanism, elimination))
 
 
 def _in_closed_form(mechanism: Mechanism) -> tuple[Inverse | None, tuple[Assignment, ...]]:
@@ -104,15 +104,15 @@ def without_search(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, chain=chain, branches=branches, search=None)
 
 
-def searched_flag(both: Scanned) -> tuple[Let, ...]:
+def searched_flag(both: Searched) -> tuple[Let, ...]:
     """The flag that the parameter is not zero; none where there is no closed form."""
     search = both.mechanism.search
     if search is None or search.where is None:
         return ()
-    return (Let(SEARCHED, sp.Gt(sp.Abs(search.where.symbol), 0), f"whether to scan {search.joint.name} for a root"),)
+    return (Let(SEARCHED, sp.Gt(sp.Abs(search.where.symbol), 0), f"whether to search along {search.joint.name}"),)
 
 
-def naming_of(both: Scanned) -> tuple[Statement, ...]:
+def naming_of(both: Searched) -> tuple[Statement, ...]:
     """The statements in front of the derivation."""
     return both.trial.naming if both.closed is None else both.closed.naming
 
@@ -126,19 +126,19 @@ def from_joints(mechanism: Mechanism) -> Program:
     return normalise("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
 
 
-def trial_on_branch(both: Scanned) -> Trial:
+def trial_on_branch(both: Searched) -> Trial:
     """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step."""
     first, solved = _statements(both)
     return _trial(both, *_sides(both, first, solved), solved)
 
 
-def trial_of_all_signs(both: Scanned) -> Trial:
+def trial_of_all_signs(both: Searched) -> Trial:
     """A trial whose signs are all positive."""
     first, solved = _statements(both)
     return _trial(both, tuple(first), {a.sigma: sp.Integer(1) for a in both.trial_branches}, solved)
 
 
-def _statements(both: Scanned) -> tuple[list[Let], tuple[Statement, ...]]:
+def _statements(both: Searched) -> tuple[list[Let], tuple[Statement, ...]]:
     """What a trial knows, and the statements that solve it."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -150,7 +150,7 @@ def _statements(both: Scanned) -> tuple[list[Let], tuple[Statement, ...]]:
 
 
 def _trial(
-    both: Scanned, first: Sequence[Let], signs: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Statement]
+    both: Searched, first: Sequence[Let], signs: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Statement]
 ) -> Trial:
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])
@@ -166,7 +166,7 @@ def _trial(
 
 
 def _sides(
-    both: Scanned, first: Sequence[Let], solved: Sequence[Statement]
+    both: Searched, first: Sequence[Let], solved: Sequence[Statement]
 ) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
     """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
 

@@ -24,10 +24,10 @@ from derive.kinematics.branches.derived import with_named_steps
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, solve_at, solve_pose
 from derive.kinematics.refusals.neighbours import fitting_task, what_misses
-from derive.kinematics.scan.derivations import Scanned, solve_both
-from derive.kinematics.scan.elimination.order import elimination_of
-from derive.kinematics.scan.guards import guards_of
-from derive.kinematics.scan.wave import wave_program
+from derive.kinematics.search.derivations import Searched, solve_both
+from derive.kinematics.search.elimination.order import elimination_of
+from derive.kinematics.search.guards import guards_of
+from derive.kinematics.search.wave import wave_program
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
 from derive.solver.unsolved import Undetermined, Unsolved, with_advice
@@ -74,7 +74,7 @@ def with_search(mechanism: Mechanism) -> Mechanism:
     return mechanism
 
 
-def solve_searched(stated: Mechanism, mechanism: Mechanism) -> Scanned:
+def solve_searched(stated: Mechanism, mechanism: Mechanism) -> Searched:
     """A machine solved with its search. Where the residual of the steps is no wave, the joints are eliminated.
 
     stated: the machine before a search was chosen.

@@ -18,11 +18,11 @@ from derive.equations.closures.fixed_names import fixed_lets
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Solve, Statement
 from derive.ir.symbols import real
-from derive.kinematics.scan.elimination.line import SIZE, Move, axis_line
-from derive.kinematics.scan.elimination.numbers import halves
-from derive.kinematics.scan.elimination.order import PRODUCTS, Elimination
-from derive.kinematics.scan.elimination.ring import Fixed, Place
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.search.elimination.line import SIZE, Move, axis_line
+from derive.kinematics.search.elimination.numbers import halves
+from derive.kinematics.search.elimination.order import PRODUCTS, Elimination
+from derive.kinematics.search.elimination.ring import Fixed, Place
+from derive.kinematics.search.programs import GOAL
 
 NAME = "eliminate_two_joints"
 _UNKNOWNS = (3, 6, 1, 2)

@@ -15,8 +15,8 @@ from derive.equations.trigonometry import named_trigonometry
 from derive.geometry.frames import Factor, Motion
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SCALE, cosine, real, sine
-from derive.kinematics.scan.elimination.line import Move, rotation, shift, turn
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.search.elimination.line import Move, rotation, shift, turn
+from derive.kinematics.search.programs import GOAL
 
 JOINTS = 6
 

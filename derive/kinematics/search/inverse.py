@@ -18,9 +18,9 @@ from derive.ir.reason import Why, about_joint, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, cosine, real, sine
 from derive.kinematics.branches.assignment import with_branch_signs
 from derive.kinematics.inverse import Inverse
-from derive.kinematics.scan.derivations import (
+from derive.kinematics.search.derivations import (
     SEARCHED,
-    Scanned,
+    Searched,
     named_apart,
     naming_of,
     searched_flag,
@@ -28,10 +28,11 @@ from derive.kinematics.scan.derivations import (
     trial_on_branch,
     wanted,
 )
-from derive.kinematics.scan.elimination.vanishing import eliminated_trial
-from derive.kinematics.scan.margins import DETERMINANT, margins_wanted
-from derive.kinematics.scan.parts import look_program
-from derive.kinematics.scan.programs import (
+from derive.kinematics.search.elimination.vanishing import eliminated_trial
+from derive.kinematics.search.find import ONWARD, Steps, search_program
+from derive.kinematics.search.margins import DETERMINANT, margins_wanted
+from derive.kinematics.search.parts import look_program
+from derive.kinematics.search.programs import (
     FOUND,
     GOAL,
     LOOKED_FOR,
@@ -40,12 +41,11 @@ from derive.kinematics.scan.programs import (
     joints_program,
     step_program,
 )
-from derive.kinematics.scan.search import ONWARD, Steps, search_program
-from derive.kinematics.scan.tried import try_program
-from derive.kinematics.scan.wave import wave_program
+from derive.kinematics.search.tried import try_program
+from derive.kinematics.search.wave import wave_program
 
 
-def branch_statements(both: Scanned) -> tuple[Statement, ...]:
+def branch_statements(both: Searched) -> tuple[Statement, ...]:
     """The inverse of one branch, up to the axis values of every joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -65,13 +65,13 @@ def branch_statements(both: Scanned) -> tuple[Statement, ...]:
     )
 
 
-def _wave(both: Scanned) -> Call:
+def _wave(both: Searched) -> Call:
     """The wave, which is the same for all branches."""
     program, _ = wave_program(both)
     return Call(program, _arguments(both, program), tuple(real(o.name) for o in program.outputs))
 
 
-def _closed(both: Scanned, closed: Inverse) -> tuple[Statement, ...]:
+def _closed(both: Searched, closed: Inverse) -> tuple[Statement, ...]:
     """The closed form, which has the first crossing alone."""
     crossing = next(b for b in both.mechanism.branches if b.is_crossing)
     solved = with_branch_signs(closed.derivation.statements, both.closed_branches)
@@ -80,7 +80,7 @@ def _closed(both: Scanned, closed: Inverse) -> tuple[Statement, ...]:
     return (*named_apart(_only(solved, SEARCHED), "closed"), only)
 
 
-def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
+def _arguments(both: Searched, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
     """What the search of a branch is given."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -92,7 +92,7 @@ def _arguments(both: Scanned, program: Program) -> tuple[tuple[sp.Symbol, sp.Exp
     return tuple((name, given[name]) for name in program.inputs if name in given)
 
 
-def search_given(both: Scanned) -> Program:
+def search_given(both: Searched) -> Program:
     """The arguments of the search for all roots of a pose."""
     arguments = _arguments(both, search_of(both))
     read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
@@ -100,7 +100,7 @@ def search_given(both: Scanned) -> Program:
     return normalise("search_given", statements, [Output(name.name, value) for name, value in arguments])
 
 
-def search_of(both: Scanned) -> Program:
+def search_of(both: Searched) -> Program:
     """The program that finds the root of a branch, with the programs that it calls."""
     mechanism = both.mechanism
     assert mechanism.search is not None
@@ -121,7 +121,7 @@ def search_of(both: Scanned) -> Program:
     return search_program(mechanism, steps, (*given, *(real(o.name) for o in wave.outputs)))
 
 
-def _chosen(both: Scanned) -> Iterable[Let]:
+def _chosen(both: Searched) -> Iterable[Let]:
     """The angle of every joint, from the search or in closed form."""
     for joint in both.mechanism.solved_joints:
         name = joint.symbol.name

@@ -20,13 +20,13 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select, Wrap
 from derive.ir.program import Let, Output, Program, Solve, Statement
 from derive.ir.symbols import SCALE, SIDE, TRIED, cosine, flag, real, sine
-from derive.kinematics.scan.elimination.equations import Equations
-from derive.kinematics.scan.elimination.line import direction_of
-from derive.kinematics.scan.elimination.matrix import UNKNOWNS, VANISHING, call_of, entries_at, rows_of
-from derive.kinematics.scan.elimination.order import Elimination
-from derive.kinematics.scan.elimination.ring import Fixed, Place
-from derive.kinematics.scan.programs import begun
-from derive.kinematics.scan.tried import RATE, REMAINDER, ROOM
+from derive.kinematics.search.elimination.equations import Equations
+from derive.kinematics.search.elimination.line import direction_of
+from derive.kinematics.search.elimination.matrix import UNKNOWNS, VANISHING, call_of, entries_at, rows_of
+from derive.kinematics.search.elimination.order import Elimination
+from derive.kinematics.search.elimination.ring import Fixed, Place
+from derive.kinematics.search.programs import begun
+from derive.kinematics.search.tried import RATE, REMAINDER, ROOM
 
 _ASIDE = sp.Float("0.7")
 """The second share of the powers by which both are compared."""

@@ -11,7 +11,7 @@ from derive.equations.axes import reference_value
 from derive.ir.primitives import Select, Wrap
 from derive.ir.program import Let
 from derive.ir.symbols import SCALE, flag, real
-from derive.kinematics.scan.tried import ROOM
+from derive.kinematics.search.tried import ROOM
 
 HAS_TWIN, TWO_WAYS = flag("has_twin"), flag("had_two_ways")
 """Whether there is a twin so far; whether the last trial told two ways to solve the others."""

@@ -11,7 +11,7 @@ from derive.ir.passes import normalise
 from derive.ir.program import Output
 from derive.ir.symbols import real
 from derive.kinematics.sampling import sample_axes, sample_machine
-from derive.kinematics.scan.programs import GOAL
+from derive.kinematics.search.programs import GOAL
 
 MACHINES = 6
 

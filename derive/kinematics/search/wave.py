@@ -22,12 +22,12 @@ from derive.ir.primitives import ToReal, larger
 from derive.ir.program import Iterate, Let, Output, Program, Solve, Statement
 from derive.ir.symbols import TRIED, cosine, count, real, sine
 from derive.kept import kept_by_identity
-from derive.kinematics.scan.derivations import Scanned, trial_of_all_signs
-from derive.kinematics.scan.elimination.equations import Equations
-from derive.kinematics.scan.elimination.matrix import call_of, determinant_of
-from derive.kinematics.scan.product import Product, product_of
-from derive.kinematics.scan.programs import LOOKED_FOR
-from derive.kinematics.scan.samples import MACHINES, samples_of
+from derive.kinematics.search.derivations import Searched, trial_of_all_signs
+from derive.kinematics.search.elimination.equations import Equations
+from derive.kinematics.search.elimination.matrix import call_of, determinant_of
+from derive.kinematics.search.product import Product, product_of
+from derive.kinematics.search.programs import LOOKED_FOR
+from derive.kinematics.search.samples import MACHINES, samples_of
 from derive.solver.unsolved import Unsolved
 from derive.work import stage
 
@@ -61,7 +61,7 @@ def turned(degree: int, angle: sp.Expr) -> tuple[list[Let], list[sp.Expr], list[
 
 @kept_by_identity(4)
 @stage("the wave of a root search")
-def wave_program(both: Scanned) -> tuple[Program, int]:
+def wave_program(both: Searched) -> tuple[Program, int]:
     """The program that computes the coefficients, with the bound of their rounding; and the degree."""
     wave = _product(both) if both.eliminated is None else _determinant(both.eliminated)
     degree, most = wave.degree, wave.degree + _BEYOND
@@ -115,7 +115,7 @@ class _Sampled:
     degree: int
 
 
-def _product(both: Scanned) -> _Sampled:
+def _product(both: Searched) -> _Sampled:
     """The residuals of all branches, multiplied."""
     samples, trial = _around(both), trial_of_all_signs(both)
     found = product_of(trial.statements, trial.value, samples)
@@ -135,7 +135,7 @@ def _determinant(equations: Equations) -> _Sampled:
     return _Sampled((call_of(equations),), (*own, *statements), value, sp.Integer(0), equations.elimination.degree)
 
 
-def _around(both: Scanned) -> dict[str, Array]:
+def _around(both: Searched) -> dict[str, Array]:
     """Poses of some machines, a row for each, and the joint all around the circle."""
     found = {n: values[:, None] for n, values in samples_of(both.mechanism, both.forward).items()}
     return found | {TRIED.name: 0.1 + 2.0 * np.pi * np.arange(_ANGLES)[None, :] / _ANGLES}

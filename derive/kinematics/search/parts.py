@@ -14,8 +14,8 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, ToReal, larger
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import count, flag, real
-from derive.kinematics.scan.programs import START
-from derive.kinematics.scan.wave import FIFTH, NOISE, names_of, turned
+from derive.kinematics.search.programs import START
+from derive.kinematics.search.wave import FIFTH, NOISE, names_of, turned
 
 AHEAD_BY, DIRECTION = real("ahead_by"), count("direction")
 """Where the wave is looked at: so far from the start of the search, in this direction, 1 or -1."""

@@ -8,8 +8,8 @@ import sympy as sp
 
 from derive.ir.program import Call, Let, Solve
 from derive.ir.symbols import cosine, real, sine
-from derive.kinematics.scan.elimination.equations import Equations
-from derive.kinematics.scan.elimination.order import EQUATIONS, Elimination
+from derive.kinematics.search.elimination.equations import Equations
+from derive.kinematics.search.elimination.order import EQUATIONS, Elimination
 
 Entries = dict[tuple[int, int, int], sp.Expr]
 """By equation, and place among C², CS, S² of d, and of e."""

@@ -47,7 +47,7 @@ _ZERO = sp.Integer(0)
 
 @dataclass(frozen=True)
 class Trial:
-    """One trial: statements that solve the other joints with the scanned one at `TRIED`, and the residual that they
+    """One trial: statements that solve the other joints with the searched one at `TRIED`, and the residual that they
     leave.
     """
 

@@ -19,10 +19,10 @@ from derive.description.mechanism import Joint, Mechanism
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.ir.interpret import Array, evaluate
 from derive.kinematics.forward import pose_at_axes
-from derive.kinematics.scan.elimination.line import SIZE
-from derive.kinematics.scan.elimination.numbers import Numbers, numbers_of
-from derive.kinematics.scan.elimination.ring import JOINTS, Ring, ring_of
-from derive.kinematics.scan.samples import samples_of
+from derive.kinematics.search.elimination.line import SIZE
+from derive.kinematics.search.elimination.numbers import Numbers, numbers_of
+from derive.kinematics.search.elimination.ring import JOINTS, Ring, ring_of
+from derive.kinematics.search.samples import samples_of
 from derive.work import counted
 
 SEARCHED, FREE = 2, 5
