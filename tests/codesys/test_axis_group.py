@@ -158,6 +158,22 @@ def test_a_program_checks_a_line() -> None:
             assert program.dVelocity == pytest.approx(wanted, rel=1e-4)
 
 
+def test_a_program_teaches_offsets() -> None:
+    """The program of the guide: three marks of a SCARA with other offsets, and these are found."""
+    _, program, _ = _asking("Softkin_Scara2_Z", name="PRG_Teach")
+    true = Scara2Z(arm_length_1=300.0, arm_length_2=250.0, offset_a1=1.8, offset_a2=-2.5, offset_z=0.4)
+    for axes in ((20.0, 60.0, 10.0), (-40.0, 100.0, 35.0), (70.0, -50.0, 20.0)):
+        program.axes.a0, program.axes.a1, program.axes.a2 = axes
+        place = program.frame.vT
+        place.dX, place.dY, place.dZ = true.forward(axes)[0].position
+        for program.xMeasured in (True, False):
+            program()
+    assert program.teach.iRows == 3 and not program.xFits
+    for program.xSolve in [True] * 100:
+        program()
+    assert program.xFits and program.aOffsets[:3] == pytest.approx((1.8, -2.5, 0.4), abs=1e-6)
+
+
 def _line(robot: Scara2Z) -> list[tuple[float, ...]]:
     """Axis values along the line of the guide."""
     return [robot.inverse(((400.0, y, 0.0), np.eye(3)), (1, 0, 0)) for y in np.linspace(100.0, -100.0, 101)]

@@ -77,6 +77,7 @@ def test_an_older_library_gets_the_predecessors() -> None:
     assert len(older.implements) == len(current.implements) - 4
     for name in ("ISoftkin", "Softkin_CheckLine"):  # and what asks a block by it
         assert f"softkin/{name}.st" in rendered(None) and f"softkin/{name}.st" not in rendered("before_4_11")
+    assert "softkin/Softkin_Teach.st" in rendered("before_4_11"), "it asks by an interface of every library"
 
 
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:

@@ -88,7 +88,11 @@ class StructuredTextFiles:
         rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):
             files[name] = templates.get_template(f"{name}.j2").render(
-                contract.spelling, overview=rows, own=contract.own_interface, flat=contract.is_flat
+                contract.spelling,
+                overview=rows,
+                own=contract.own_interface,
+                flat=contract.is_flat,
+                teaches=f"{_SHARED}/Softkin_Teach" in objects,
             )
         return dict(sorted(files.items()))
 
