@@ -15,8 +15,8 @@ from tests.corpus.dimensions import DIMENSIONS
 from tests.mechanisms import named
 from tests.orthonormal import about
 from tests.text import values
+from tests.text.checked_lines import Axes, Robot, robot
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, Controller
-from tests.text.test_shared_line import Axes, Robot, robot
 
 Row = tuple[Axes, Sequence[float], Any]
 """Axis values, and position and rotation that were measured there."""
@@ -82,6 +82,14 @@ def test_offsets_are_found(name: str) -> None:
     assert made.dPositionAfter < 1e-6 < 0.1 < made.dPositionBefore and made.dRotationAfter < 1e-6
 
 
+@pytest.mark.parametrize("name", ["Kin_Scara3_Z", "Kin_ArticulatedRobot_6DOF", "Kin_5Axes", "Kin_Delta_P3C_Type3"])
+def test_offsets_far_away(name: str) -> None:
+    """Offsets that are off by up to 45 degrees or lengths are found in a few passes."""
+    for true in np.random.default_rng(3).uniform(-45.0, 45.0, (5, len(MARKS[name][0]))):
+        made = taught(teacher(robot(name), measured(mended(name, true), MARKS[name])))
+        assert made.aCorrections[: len(true)] == pytest.approx(true.tolist(), abs=1e-5) and made.iPasses <= 10
+
+
 @pytest.mark.parametrize("name", MARKS)
 def test_the_best_offsets_of_rows_with_errors(name: str) -> None:
     """Least squares in SciPy, on the same rows with errors, find the same offsets and leave the same errors."""
@@ -132,6 +140,18 @@ def test_positions_alone() -> None:
     assert made.aDetermined == [True] * 5 + [False]
     assert made.aCorrections == pytest.approx(true, abs=1e-5)
     assert made.dPositionAfter < 1e-6 and made.dRotationBefore == made.dRotationAfter == 0.0
+
+
+def test_rows_of_both_kinds() -> None:
+    """The error of rotations is that of the rows that have one; and a row is kept once, however long xAdd is set."""
+    one = robot("Kin_Scara3_Z")
+    ((axes, place, turn),) = measured(one.twin, MARKS["Kin_Scara3_Z"][:1])
+    made = teacher(one, [(axes, place, about(0, 3.0) @ turn)])
+    made.xPositionOnly = True
+    for made.xAdd in (True, True, False):
+        made()
+    assert made.iRows == 2
+    assert taught(made).dRotationBefore == pytest.approx(3.0)
 
 
 def test_axes_that_do_the_same_are_not_determined() -> None:
