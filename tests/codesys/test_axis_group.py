@@ -81,17 +81,17 @@ def test_the_demo_ends_in_its_error_step_and_begins_again(step: int) -> None:
     assert demo.iStep == 100 and not demo.xReset and demo.eError == "SMC_NO_ERROR" and not group.refused
 
 
-def _asking(*blocks: str, **texts: str) -> tuple[Library, Any, Any]:
+def _asking(*blocks: str, name: str = "PRG_Ask", **texts: str) -> tuple[Library, Any, Any]:
     """The program that asks a group, its library, and the group, which has these blocks and is enabled."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Ask"))
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith(f"PROGRAM {name}\n"))
     wanted = tuple(f"/{name}." for name in blocks)
     needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
     group = "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
-    own = {"robotics": ROBOTICS, "Groups": group, "PRG_Ask": program, **texts}
+    own = {"robotics": ROBOTICS, "Groups": group, name: program, **texts}
     library = compile_st({**needed, **renamed(own)})
     found = library.constant("Scara")
     found.isEnabled = True
-    return library, library.new("PRG_Ask"), found
+    return library, library.new(name), found
 
 
 def test_a_program_asks_the_instance_of_the_group() -> None:
@@ -128,6 +128,55 @@ def test_what_it_asks_changes_nothing() -> None:
     state = [plain(getattr(arms, name)) for name in names]
     ask()
     assert ask.xFound and len(names) > 10 and [plain(getattr(arms, name)) for name in names] == state
+
+
+def test_a_program_checks_a_line() -> None:
+    """The program of the guide: a line of the group's SCARA that it can follow, with the velocity that its axes allow,
+    one that ends out of reach, and one past a stretched arm.
+    """
+    library, program, group = _asking("Softkin_Scara2_Z", name="PRG_Line")
+    program.xCheck = True
+    program()
+    assert not program.check.xBusy and not program.xMayMove, "no kinematics is active"
+    arms = group.kinematics = library.new("Softkin_Scara2_Z")
+    arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0
+    assert arms.call("Initialize") == "SMC_NO_ERROR"
+    robot = Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
+    axes = robot.inverse(((400.0, 100.0, 0.0), np.eye(3)), (1, 0, 0))
+    program.axes.a0, program.axes.a1, program.axes.a2 = axes
+    program.aLimits[:3] = 90.0, 180.0, 100.0
+    cases = ((400.0, -100.0, True, ""), (600.0, 0.0, False, "A2: out of reach [u]"), (549.9, 0.0, False, ""))
+    for x, y, may, why in cases:
+        program.target.vT.dX, program.target.vT.dY = x, y
+        for program.xCheck in (False, *[True] * 11):
+            program()
+        assert program.check.xDone and program.xMayMove is may and program.check.sReason == why
+        if may:
+            assert program.check.dLargestStep < 1.0 and program.check.iChecked == 101
+            rates = [np.linalg.solve(np.array(robot.jacobian(row))[:2, :2], (0.0, -1.0)) for row in _line(robot)]
+            wanted = min(np.radians((90.0, 180.0)) / np.abs(rates).max(axis=0))
+            assert program.dVelocity == pytest.approx(wanted, rel=1e-4)
+
+
+def test_a_program_teaches_offsets() -> None:
+    """The program of the guide: three marks of a SCARA with other offsets, and these are found."""
+    _, program, _ = _asking("Softkin_Scara2_Z", name="PRG_Teach")
+    true = Scara2Z(arm_length_1=300.0, arm_length_2=250.0, offset_a1=1.8, offset_a2=-2.5, offset_z=0.4)
+    for axes in ((20.0, 60.0, 10.0), (-40.0, 100.0, 35.0), (70.0, -50.0, 20.0)):
+        program.axes.a0, program.axes.a1, program.axes.a2 = axes
+        place = program.frame.vT
+        place.dX, place.dY, place.dZ = true.forward(axes)[0].position
+        for program.xMeasured in (True, False):
+            program()
+    assert program.teach.iRows == 3 and not program.xFits
+    for program.xSolve in [True] * 100:
+        program()
+    assert program.xFits and program.aOffsets[:3] == pytest.approx((1.8, -2.5, 0.4), abs=1e-6)
+
+
+def _line(robot: Scara2Z) -> list[tuple[float, ...]]:
+    """Axis values along the line of the guide."""
+    return [robot.inverse(((400.0, y, 0.0), np.eye(3)), (1, 0, 0)) for y in np.linspace(100.0, -100.0, 101)]
 
 
 def test_a_coupled_group_is_asked_by_its_parts() -> None:

@@ -37,7 +37,7 @@ def test_its_code_parses(program: str) -> None:
 def test_every_program_of_the_guide_is_executed() -> None:
     """A new listing needs a test that runs it: these are the ones that have one."""
     heads = [program.split("\n")[0].split()[1] for program in PROGRAMS]
-    assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Ask", "PRG_Cnc"]
+    assert heads == ["PRG_Demo", "ScaraWithTool", "PRG_Check", "PRG_Ask", "PRG_Cnc", "PRG_Line", "PRG_Teach"]
 
 
 def test_the_objects_that_it_counts() -> None:

@@ -254,7 +254,7 @@ def _arithmetic(node: ast.Binary, left: types.Type, right: types.Type) -> types.
 
 
 def _comparable(operator: str, left: types.Type, right: types.Type) -> bool:
-    if isinstance(left, types.Pointer) and right == types.IntegerLiteral(0):
+    if isinstance(left, (types.Pointer, types.Interface)) and right == types.IntegerLiteral(0):
         return operator in _EQUALITY
     met = common(left, right)
     if isinstance(met, (types.Real, types.Integer)):

@@ -127,7 +127,18 @@ def test_a_call_through_nothing_is_a_fault() -> None:
         user("n := itf.Count(iBy := 5, x := x);")()
 
 
+def test_whether_it_refers_to_a_block() -> None:
+    """A reference that is compared with 0."""
+    made = user("xRefers := (itf <> 0) AND NOT (itf = 0);")
+    for kind, refers in ((0, False), (1, True)):
+        made.iKind = kind
+        made()
+        assert made.xRefers is refers
+
+
 BODIES = {
+    "a comparison with a number": ("xFound := itf = 1;", "ICounts = the integer 1 is not allowed"),
+    "an order of references": ("xFound := itf > 0;", "is not allowed"),
     "a block that does not implement it": ("itf := base;", "Base does not fit ICounts"),
     "an interface that it does not extend": ("further := itf;", "ICounts does not fit IFurther"),
     "a method that it does not have": ("n := itf.More();", "ICounts has no method More"),

@@ -216,7 +216,7 @@ class Expressions:
 
     def _comparison(self, node: ast.Binary) -> str:
         left, right = self.facts.type_of[node.left], self.facts.type_of[node.right]
-        if isinstance(left, types.Pointer):
+        if isinstance(left, (types.Pointer, types.Interface)):
             return f"({self.value(node.left)} {'is' if node.operator == '=' else 'is not'} None)"
         wanted = types.LREAL if types.LREAL in (left, right) else None
         operator = _COMPARISONS[node.operator]

@@ -14,6 +14,7 @@ from derive.description.mechanism import Mechanism
 from derive.emit.st.names import capitalized
 from tests.catalogue.machines import bare_machine
 from tests.harness.library import Library
+from tests.mechanisms import named
 from tests.text import (
     test_axis_settings,
     test_blocks_alone,
@@ -22,7 +23,9 @@ from tests.text import (
     test_initialise,
     test_limits,
     test_shared_functions,
+    test_shared_line,
     test_shared_matrices,
+    test_shared_teach,
     test_singular_poses,
 )
 from tests.text.comparisons import COMPARISONS, POSELESS
@@ -107,6 +110,8 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     five_axes = next(m for m in MECHANISMS if m.block_name == OF_A_DIRECTION)
     straight = [next(m for m in MECHANISMS if m.block_name == name) for name in WITHOUT_TURN]
     libraries += [test_blocks_alone.geared(scara), compiled(five_axes), *map(compiled, straight)]
+    asked = {*test_shared_line.OF_STATEMENTS, *test_shared_teach.OF_STATEMENTS}
+    libraries += [compiled(named(name)) for name in sorted(asked)]
     libraries.append(test_self_test.with_faults(scara))
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
@@ -131,6 +136,8 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
         directed = serial_pairs_of(five_axes)[1]
         provoke(directed, directed.regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
+        test_shared_line.every_statement()
+        test_shared_teach.every_statement()
         for size in (*range(1, 7), 18):
             test_shared_matrices.test_solve(size)
         for size in (3, 8):

@@ -75,7 +75,9 @@ def test_an_older_library_gets_the_predecessors() -> None:
     assert "TRAFO.ISMKinematicWithConfigurations3" in older.implements
     assert current.implements[-1] == "ISoftkin" and "ISoftkin" not in older.implements
     assert len(older.implements) == len(current.implements) - 4
-    assert "softkin/ISoftkin.st" not in rendered("before_4_11")
+    for name in ("ISoftkin", "Softkin_CheckLine"):  # and what asks a block by it
+        assert f"softkin/{name}.st" in rendered(None) and f"softkin/{name}.st" not in rendered("before_4_11")
+    assert "softkin/Softkin_Teach.st" in rendered("before_4_11"), "it asks by an interface of every library"
 
 
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:

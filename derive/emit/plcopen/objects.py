@@ -158,6 +158,11 @@ def needed(path: str, files: Mapping[str, Sequence[Object]]) -> tuple[str, ...]:
     return tuple(sorted(found))
 
 
+def uses(objects: Sequence[Object], names: frozenset[str]) -> bool:
+    """Whether the code of some objects has one of these names."""
+    return not names.isdisjoint(_words(objects))
+
+
 @kept_by_identity(1000)
 def _words(objects: Sequence[Object]) -> set[str]:
     """The words of the code, except those in comments and strings."""

@@ -13,7 +13,7 @@ from jinja2 import Environment
 
 from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
-from derive.emit.plcopen.objects import Object, as_text, needed, objects_of
+from derive.emit.plcopen.objects import Object, as_text, needed, objects_of, uses
 from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
@@ -88,7 +88,11 @@ class StructuredTextFiles:
         rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):
             files[name] = templates.get_template(f"{name}.j2").render(
-                contract.spelling, overview=rows, own=contract.own_interface, flat=contract.is_flat
+                contract.spelling,
+                overview=rows,
+                own=contract.own_interface,
+                flat=contract.is_flat,
+                teaches=f"{_SHARED}/Softkin_Teach" in objects,
             )
         return dict(sorted(files.items()))
 
@@ -112,7 +116,9 @@ def _objects(
             f"{_SHARED}/{path.name}"
         ).render(contract.spelling, rotation=rotation, limits=limits, names=contract.names)
     for name, text in sorted(shared.items()):
-        yield name, objects_of(text, name.removeprefix(f"{_SHARED}/"))
+        objects = objects_of(text, name.removeprefix(f"{_SHARED}/"))
+        if not uses(objects, _absent(contract)):
+            yield name, objects
     if (own := contract.own_interface) is not None:
         yield f"{_SHARED}/{own}", objects_of(interface_text(contract, templates))
     base = objects_of(base_text(contract, templates))
@@ -122,6 +128,12 @@ def _objects(
         objects = objects_of(part["text"])
         yield part["row"]["path"], flattened(objects, base[0]) if contract.is_flat else objects
     yield from _self_tests([part["test"] for part in parts if part["test"] is not None], contract, templates)
+
+
+def _absent(contract: Contract) -> frozenset[str]:
+    """The interfaces that a profile does not have: a shared object that names one of them is left out, too."""
+    of_softmotion = contract.interfaces.keys() if contract.transformations else ()
+    return contract.omits.union(of_softmotion)
 
 
 def _self_tests(
