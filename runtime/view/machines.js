@@ -17,13 +17,15 @@ export class MachineChoice {
 
   /** model; data: `classes` and `families` by the names of machines; open(name) shows a machine. */
   constructor(model, data, open) {
-    this.search = element("input", { type: "search", "aria-label": "Search a machine by its name, or by a word", placeholder: "Search", input: () => this.#find() });
+    this.search = element("input", { type: "search", "aria-label": "Search a machine by its name, or by a word", placeholder: "Search",
+      input: () => this.#find(), keydown: (event) => this.#entered(event) });
     this.none = element("p", { role: "status", class: "soft" });
     this.dialog = element("dialog", { id: "choice", "aria-label": "Machines" },
-      element("form", { method: "dialog", class: "row" }, this.search, element("button", {}, "Close")), this.none);
+      element("div", { class: "row" }, this.search, element("button", { click: () => this.dialog.close() }, "Close")), this.none);
     this.button = element("button", { id: "machine", "aria-haspopup": "dialog", title: "Choose a machine", disabled: model.names.length < 2, click: () => this.#open() });
-    const families = Map.groupBy?.(model.names, (name) => data.families[name] ?? "") ?? new Map([["", model.names]]);
-    this.groups = [...families].sort(([one], [other]) => (one < other ? -1 : 1)).map(([family, names]) => {
+    const families = {};
+    for (const name of model.names) (families[data.families[name] ?? ""] ??= []).push(name);
+    this.groups = Object.entries(families).sort(([one], [other]) => (one < other ? -1 : 1)).map(([family, names]) => {
       const cards = names.map((name) => this.#card(name, model.describe(name), data.classes[name] ?? "", () => open(name)));
       const group = element("section", {}, element("h2", {}, family.replaceAll("_", " ")), element("div", { class: "cards" }, ...cards.map((card) => card.element)));
       this.#cards.push(...cards);
@@ -62,6 +64,13 @@ export class MachineChoice {
     this.dialog.querySelector('[aria-current="true"]')?.scrollIntoView({ block: "center" });
   }
 
+  /** Enter takes the first that is found; it is not a press of the button that has the focus then. */
+  #entered(event) {
+    if (event.key !== "Enter") return;
+    event.preventDefault();
+    this.#cards.find((card) => !card.element.hidden)?.element.click();
+  }
+
   /** Every word that is typed stands in the names or in the summary. */
   #find() {
     const words = this.search.value.toLowerCase().split(/\s+/);
@@ -84,7 +93,7 @@ export class MachineChoice {
       this.#renderer.setSize(PICTURE.width, PICTURE.height);
       this.scene = new Scene().add(...lights());
       this.camera = new PerspectiveCamera(38, PICTURE.width / PICTURE.height, 1, 1e5);
-      this.figure = new Figure({ colours: COLOURS.light });
+      this.figure = new Figure({ colours: COLOURS[matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"] });
       this.scene.add(this.figure.group);
     }
     const extent = extentOf(scene);

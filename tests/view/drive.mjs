@@ -366,8 +366,13 @@ async function chosen() {
     said: await page.locator("#choice [role=status]").textContent(),
   });
   await search("Softkin_Scara3_Z");
-  await page.locator("#choice .cards button:visible").click();
+  await page.locator("#choice input").press("Enter");
   seen.choice.taken = await page.evaluate(() => ({ name: softkinPage.model.name, isOpen: document.getElementById("choice").open, button: document.getElementById("machine").textContent }));
+  await page.locator("#machine").click();
+  await page.locator("#choice").getByRole("button", { name: "Close" }).click();
+  await page.locator("#machine").click();
+  await page.locator("#choice .cards button", { hasText: "Kin_Gantry2" }).click();
+  seen.choice.clicked = await page.evaluate(() => ({ name: softkinPage.model.name, isOpen: document.getElementById("choice").open }));
   await page.context().close();
 }
 

@@ -32,6 +32,7 @@ def test_machines_are_chosen_by_families_and_found_by_their_names(seen: Seen) ->
     assert ARM in choice["byWords"] and SCARA not in choice["byWords"]
     assert choice["none"] == [] and choice["said"] == "No machine has such a name."
     assert choice["taken"] == {"name": SCARA, "isOpen": False, "button": SCARA}
+    assert choice["clicked"] == {"name": "Kin_Gantry2", "isOpen": False}
 
 
 def test_refused_slots_are_folded(seen: Seen) -> None:
