@@ -6,7 +6,7 @@ import { element } from "./element.js";
 import { COLOURS, Figure } from "./figure.js";
 import { created } from "./limits.js";
 import { catalogue } from "./machines/index.js";
-import { extentOf } from "./space.js";
+import { extentOf, stand } from "./space.js";
 import { nominalOf, startOf } from "./start.js";
 
 const PICTURE = { width: 144, height: 104 };
@@ -96,7 +96,8 @@ export class MachineChoice {
       this.figure = new Figure({ colours: COLOURS[matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"] });
       this.scene.add(this.figure.group);
     }
-    const extent = extentOf(scene);
+    stand(this.figure.group, scene);
+    const extent = extentOf(scene, this.figure.group);
     this.figure.show(scene, extent.size);
     lookAt(this.camera, extent);
     this.#renderer.render(this.scene, this.camera);

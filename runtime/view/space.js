@@ -1,6 +1,7 @@
 /** Frames, directions and extents in space. */
 
 import { Matrix4, Quaternion, Vector3 } from "three";
+import { shapesOf } from "./shapes.js";
 
 /** The matrix of a frame. */
 export function matrixOf({ position, rotation }) {
@@ -27,9 +28,17 @@ export function pointsOf(scene) {
   return points;
 }
 
-/** The middle of all that is drawn, and the radius of a ball around it. */
-export function extentOf(scene) {
-  const points = pointsOf(scene);
+/** Place an object that holds a scene, in the frame of its work, so that the bed stands still: tables turn and tilt. */
+export function stand(object, scene) {
+  const { bed } = shapesOf(scene);
+  const matrix = bed === null ? new Matrix4() : matrixOf(bed).invert();
+  matrix.decompose(object.position, object.quaternion, object.scale);
+  object.updateMatrixWorld(true);
+}
+
+/** The middle of all that is drawn inside an object, and the radius of a ball around it. */
+export function extentOf(scene, object) {
+  const points = pointsOf(scene).map((point) => (object ? new Vector3(...point).applyMatrix4(object.matrixWorld).toArray() : point));
   const low = [0, 1, 2].map((k) => Math.min(...points.map((point) => point[k])));
   const high = [0, 1, 2].map((k) => Math.max(...points.map((point) => point[k])));
   const centre = low.map((value, k) => (value + high[k]) / 2);

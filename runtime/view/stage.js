@@ -11,7 +11,7 @@ import { COLOURS, Figure } from "./figure.js";
 import { Ground, lettersOf, triad } from "./ground.js";
 import { Labels } from "./labels.js";
 import { rowsOf } from "./pose.js";
-import { extentOf, pointsOf, quaternionFrom } from "./space.js";
+import { extentOf, pointsOf, quaternionFrom, stand } from "./space.js";
 
 /** The size of the frame of the base, of the machine's. */
 const BASE = 0.1;
@@ -38,18 +38,18 @@ export class Stage {
     this.camera = new PerspectiveCamera(38, 1, 1, 1e5);
     this.camera.up.set(0, 0, 1);
     this.scene.add(...lights());
+    this.world = new Group(); // what is given in the frame of the work
     this.figure = new Figure();
-    this.scene.add(this.figure.group);
+    this.world.add(this.figure.group);
     this.ground = new Ground();
     this.floor = this.ground.group;
     this.extra = new Group();
-    this.scene.add(this.floor, this.extra);
+    this.scene.add(this.floor, this.world);
     this.triad = triad();
     this.origin = triad();
     this.assembly = new Figure({ isGhost: true, ghost: "assembly" });
     this.assembly.group.visible = false;
-    this.scene.add(this.assembly.group);
-    this.scene.add(this.triad, this.origin);
+    this.world.add(this.assembly.group, this.extra, this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.listenToKeyEvents(canvas);
     this.orbit.addEventListener("change", () => {
@@ -72,7 +72,8 @@ export class Stage {
 
   /** Take the size of a machine from its scene. */
   measure(scene) {
-    this.extent = extentOf(scene);
+    stand(this.world, scene);
+    this.extent = extentOf(scene, this.world);
     this.size = this.extent.size;
     rangeOf(this.camera, this.size);
     this.#layFloor();
@@ -113,6 +114,7 @@ export class Stage {
   show(scene, target, options) {
     this.figure.show(scene, this.size, { ...options, hidden: new Set(this.#meshes.keys()) });
     this.shown = scene;
+    if (!this.isDragged) stand(this.world, scene);
     const tool = scene.bodies[scene.bodies.length - 1].frame;
     this.#place(this.triad, tool, 0.14);
     this.#meshes.forEach((mesh, name) => {
@@ -129,7 +131,7 @@ export class Stage {
     while (this.#ghosts.length < scenes.length) {
       const ghost = new Figure({ isGhost: true, colours: COLOURS[this.theme] });
       this.#ghosts.push(ghost);
-      this.scene.add(ghost.group);
+      this.world.add(ghost.group);
     }
     this.#ghosts.forEach((ghost, i) => {
       ghost.group.visible = i < scenes.length;
@@ -200,7 +202,7 @@ export class Stage {
     const holder = new Object3D();
     holder.add(mesh);
     this.#meshes.set(name, holder);
-    this.scene.add(holder);
+    this.world.add(holder);
   }
 
   clearBodies() {
@@ -235,7 +237,7 @@ export class Stage {
 
   #handles() {
     this.handle = new Object3D();
-    this.scene.add(this.handle);
+    this.world.add(this.handle);
     this.transform = new TransformControls(this.camera, this.canvas);
     this.transform.setSize(0.75);
     this.transform.attach(this.handle);
@@ -299,7 +301,7 @@ export class Stage {
   }
 
   #projected(point) {
-    return this.handle.position.clone().set(...point).project(this.camera);
+    return this.handle.position.clone().set(...point).applyMatrix4(this.world.matrixWorld).project(this.camera);
   }
 
   #isInside(point) {

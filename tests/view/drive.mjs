@@ -412,6 +412,21 @@ async function assembled() {
   await page.context().close();
 }
 
+/** Machines with tables, their first two turns moved: the directions of the last slide, and of Z of the work, as they are seen. */
+async function tilted() {
+  const page = await opened("");
+  seen.tilted = await page.evaluate(() => Object.fromEntries(["Softkin_TableTable_AC", "Softkin_NutatingTable_BC", "Softkin_HeadTable_AC", "Kin_Gantry3"].map((name) => {
+    const { model, stage } = softkinPage;
+    model.open(name);
+    const slide = () => model.pose.scene.joints.filter(({ kind }) => kind === "slide").at(-1).axis;
+    const directions = () => [slide(), [0, 0, 1]].map((axis) => stage.camera.up.clone().set(...axis).transformDirection(stage.world.matrixWorld).toArray());
+    const before = directions();
+    model.moveAxes(model.axes.map((value, i) => (model.description.axes[i].unit === "deg" ? value + 20 : value)));
+    return [name, { before, after: directions() }];
+  })));
+  await page.context().close();
+}
+
 /** A controller, played by a socket that the page is given: its machine, axes that move it, axes that must not. */
 async function live() {
   const page = await opened("#machine=Kin_Gantry2");
@@ -464,7 +479,7 @@ async function ownAgain() {
   await page.context().close();
 }
 
-for (const work of [live, ownAgain, chosen, left, assembled, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
+for (const work of [live, ownAgain, chosen, left, assembled, tilted, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

@@ -110,3 +110,14 @@ def test_machines_look_like_machines(seen: Seen) -> None:
     assert shapes["Softkin_HeadTable_AC"] == ["table", "beam", "beam", "beam", "barrel"]
     assert shapes["Kin_Scara2_Z"] == ["barrel", "barrel", "quill"]
     assert shapes["Kin_Tripod_Linear"] == ["beam"] * 3
+
+
+@pytest.mark.parametrize(
+    "name", ["Softkin_TableTable_AC", "Softkin_NutatingTable_BC", "Softkin_HeadTable_AC", "Kin_Gantry3"]
+)
+def test_tables_tilt_and_slides_stand(name: str, seen: Seen) -> None:
+    """Z of the machine points up, whatever its tables do; the work tilts with a table that tilts."""
+    before, after = (np.array(seen["tilted"][name][which]) for which in ("before", "after"))
+    assert np.allclose(np.abs(before[0]), (0, 0, 1), atol=1e-9)
+    assert np.allclose(after[0], before[0], atol=1e-9)
+    assert (np.linalg.norm(after[1] - before[1]) > 0.1) == ("Table_" in name and "Head" not in name)
