@@ -305,10 +305,10 @@ async function slice() {
   const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { theme: "dark" });
   await unfold(page, "^(Slice|Singul)");
   const computed = async (what, isFirst) => {
+    await page.evaluate(() => { globalThis.last = softkinPage.slice.values; });
     await page.locator("#slice-what").selectOption(what);
-    if (isFirst) await page.getByRole("button", { name: "Compute" }).click();
-    else await page.waitForFunction(() => /Computing/.test(document.getElementById("panel").textContent)); // by itself
-    await page.waitForFunction(() => softkinPage.stage.slice && /of the slice is reached/.test(document.getElementById("panel").textContent));
+    if (isFirst) await page.getByRole("button", { name: "Compute" }).click(); // later another choice is computed by itself
+    await page.waitForFunction(() => softkinPage.slice.values !== last && /of the slice is reached/.test(document.getElementById("panel").textContent));
     return page.evaluate(() => {
       const { slice } = softkinPage;
       const parts = slice.parts.map(({ row, column, values }) => ({ row, column, values: [...values] }));
