@@ -22,6 +22,8 @@ from derive.view.node import MissingTool
 from derive.view.page import BrokenPage, Content, Model, page
 
 _LANGUAGE = "javascript"
+_FIRST = "Kin_ArticulatedRobot_6DOF"
+"""The machine of a catalogue that has it which most readers know: its page opens with it."""
 _ROOT = MECHANISMS.parents[1]
 PACKAGES = _ROOT / ".view" if (_ROOT / "pyproject.toml").is_file() else Path.home() / ".cache" / "softkin" / "view"
 """The folder into which npm installs the packages of the page, once."""
@@ -51,7 +53,9 @@ def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Conten
     """The content of the page of a catalogue."""
     classes = {mechanism.name: _class(mechanism) for _, mechanism in entries}
     reports = {mechanism.name: _report(mechanism) for _, mechanism in entries}
-    return Content("Softkin", modules, "softkin", classes, reports=reports)
+    families = {mechanism.name: mechanism.family for _, mechanism in entries}
+    first = _FIRST if _FIRST in classes else ""
+    return Content("Softkin", modules, "softkin", classes, families, first, reports=reports)
 
 
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:

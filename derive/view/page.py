@@ -53,6 +53,10 @@ class Content:
     """The Python package of the machines."""
     classes: Mapping[str, str]
     """The name of a machine → that of its class in Python."""
+    families: Mapping[str, str] = field(default_factory=dict)
+    """The name of a machine → its family."""
+    first: str = ""
+    """The machine that is shown where the address names none; empty for the first of the modules."""
     keywords: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     """The name of a machine → of its parameters in JavaScript → in Python, where they differ."""
     reports: Mapping[str, str] = field(default_factory=dict)
@@ -67,6 +71,8 @@ def page(content: Content, packages: Path) -> str:
     data = {
         "package": content.package,
         "classes": dict(content.classes),
+        "families": dict(content.families),
+        "first": content.first or next(iter(content.classes)),
         "keywords": {name: dict(keywords) for name, keywords in content.keywords.items()},
         "reports": dict(content.reports),
         "models": [{"body": m.body, "scale": m.scale, "data": b64encode(m.data).decode()} for m in content.models],

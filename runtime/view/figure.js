@@ -1,9 +1,12 @@
 /** A machine as solid bodies: rods along its lines, a barrel for every turn, a carriage for every slide, plates, the tool. */
 
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Matrix4, Mesh,
-  MeshLambertMaterial, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial,
+  SphereGeometry, Vector3,
 } from "three";
+import { groundOf } from "./ground.js";
+import { shapesOf } from "./shapes.js";
+import { extentOf, levelAlong } from "./space.js";
 
 const ROUND = new CylinderGeometry(1, 1, 1, 24);
 const BALL = new SphereGeometry(1, 20, 14);
@@ -14,16 +17,22 @@ const UP = new Vector3(0, 1, 0);
 /** Radii and sizes over the size of the machine. */
 const THICK = { base: 0.02, link: 0.022, rod: 0.009, plate: 0.011, tool: 0.01 };
 const BARREL = { radius: 0.034, length: 0.1 };
-const CARRIAGE = 0.065;
-const RAIL = 0.012;
+const TABLE = { radius: 0.1, length: 0.03 };
+const TRUNNION = { radius: 0.03, length: 0.24 };
+const SPINDLE = { radius: 0.034, part: 0.6 };
+/** A beam across and in height, what it is longer than the way of its carriage at both ends, and the carriage. */
+const BEAM = { width: 0.05, height: 0.022, beyond: 0.06 };
+const CARRIAGE = [0.07, 0.09, 0.05];
+const QUILL = 0.022;
+const LEG = 0.016;
 const CYLINDER = 0.017;
 const LARGEST_PLATE = 24;
 /** A ghost is thinner, so that it does not shine through the machine where both are at one place. */
 const GHOST = 0.86;
 
 export const COLOURS = {
-  light: { base: 0x8b95a3, link: 0xe08a2e, rod: 0x5b6b80, plate: 0x3f7fbf, joint: 0x39424f, tool: 0x1f9d61, ghost: 0x4d7cc9 },
-  dark: { base: 0x6d7886, link: 0xe59a45, rod: 0x9fb0c6, plate: 0x5b9be0, joint: 0xb6c0cc, tool: 0x35c47f, ghost: 0x86aef0 },
+  light: { base: 0x8b95a3, link: 0xe08a2e, rod: 0x5b6b80, plate: 0x3f7fbf, joint: 0x39424f, tool: 0x1f9d61, ghost: 0x4d7cc9, assembly: 0x9556c4 },
+  dark: { base: 0x6d7886, link: 0xe59a45, rod: 0x9fb0c6, plate: 0x5b9be0, joint: 0xb6c0cc, tool: 0x35c47f, ghost: 0x86aef0, assembly: 0xc79bef },
 };
 export const STATES = { good: null, near: 0xe0a100, singular: 0xd83a34, refused: 0xd83a34 };
 
@@ -33,9 +42,10 @@ export class Figure {
   #used = new Map();
   #plates = [];
 
-  constructor({ isGhost = false, colours = COLOURS.light } = {}) {
+  /** ghost: the name of its colour. */
+  constructor({ isGhost = false, ghost = "ghost", colours = COLOURS.light } = {}) {
     this.group = new Group();
-    this.isGhost = isGhost;
+    Object.assign(this, { isGhost, ghost });
     this.materials = {};
     for (const kind of ["base", "link", "rod", "plate", "joint", "tool", "refused"]) {
       this.materials[kind] = new MeshLambertMaterial({
@@ -50,7 +60,7 @@ export class Figure {
   /** The colours of a theme. */
   paint(colours) {
     for (const kind of ["base", "link", "rod", "plate", "joint", "tool"]) {
-      this.materials[kind].color.set(this.isGhost ? colours.ghost : colours[kind]);
+      this.materials[kind].color.set(colours[this.isGhost ? this.ghost : kind]);
     }
     this.colours = colours;
   }
@@ -64,18 +74,25 @@ export class Figure {
   /** Stand as a scene says. hidden: names of bodies that a mesh of their own shows; refused: whether a body refuses. */
   show(scene, size, { hidden = new Set(), refused = () => false } = {}) {
     this.#used.clear();
+    const { shapes, isTool } = shapesOf(scene);
+    this.shapes = shapes;
     let plates = 0;
     scene.bodies.forEach((body, i) => {
       if (hidden.has(body.name) || (this.isGhost && body.kind === "base")) return;
       const material = refused(body) ? "refused" : body.kind;
       const thick = size * THICK[body.kind] * (this.isGhost ? GHOST : 1);
-      for (const [start, end] of body.lines) this.#rod(start, end, thick, material);
+      const isSpindle = isTool && i === scene.bodies.length - 2;
+      const isBed = ["table", "trunnion"].includes(shapes[scene.joints.findIndex((joint) => joint.body === i)]);
+      body.lines.forEach(([start, end], k) => {
+        const shape = isBed ? this.#bed : isSpindle && k === body.lines.length - 1 ? this.#spindle : this.#rod;
+        shape.call(this, start, end, thick, material, size);
+      });
       if (body.kind === "plate" || body.kind === "base") plates += this.#face(plates, body, material);
-      if (body.kind === "base" && !body.lines.length) this.#foot(body.frame.position, size);
+      if (body.kind === "base" && !body.lines.length) this.#foot(body.frame.position, size, shapes[0]);
       if (body.kind === "tool") this.#tool(body.frame, size, material);
       for (const joint of scene.joints.filter((one) => one.body === i)) {
         if (body.kind === "rod") this.#cylinder(body, joint, size, refused(body));
-        else this.#joint(joint, size, refused(body));
+        else this.#joint(joint, shapes[scene.joints.indexOf(joint)], size, refused(body), scene);
       }
     });
     this.#plates.forEach((plate, i) => { plate.visible = i < plates; });
@@ -113,6 +130,19 @@ export class Figure {
     }
   }
 
+  /** A line of what carries the work: a beam of the machine's bed. */
+  #bed(start, end, thick, kind) {
+    this.#beam(new Vector3(...start), new Vector3(...end), 2.4 * thick, 2.4 * thick, kind === "link" ? "base" : kind);
+  }
+
+  #beam(a, b, height, width, kind) {
+    const axis = b.clone().sub(a).normalize();
+    const beam = this.#mesh(BLOCK, kind);
+    beam.position.copy(a).lerp(b, 0.5);
+    beam.quaternion.copy(levelAlong(axis));
+    beam.scale.set(height, a.distanceTo(b) + height, width);
+  }
+
   #along(geometry, a, b, radius, kind) {
     const way = b.clone().sub(a);
     const length = way.length();
@@ -123,21 +153,41 @@ export class Figure {
     return mesh;
   }
 
-  #joint(joint, size, isRefused) {
+  /** The line of a spindle: its thick body, then the tool. */
+  #spindle(start, end, thick, kind, size) {
+    const [a, b] = [new Vector3(...start), new Vector3(...end)];
+    const middle = a.clone().lerp(b, SPINDLE.part);
+    this.#along(ROUND, a, middle, size * SPINDLE.radius, kind);
+    this.#along(ROUND, middle, b, 0.5 * thick, "joint");
+  }
+
+  #joint(joint, shape, size, isRefused, scene) {
     const kind = isRefused ? "refused" : "joint";
+    const thin = (this.isGhost ? GHOST : 1) * size;
     const [at, axis] = [new Vector3(...joint.at), new Vector3(...joint.axis)];
     if (joint.kind === "turn") {
-      const thin = this.isGhost ? GHOST : 1;
-      const half = (thin * size * BARREL.length) / 2;
-      this.#along(ROUND, at.clone().addScaledVector(axis, -half), at.clone().addScaledVector(axis, half), thin * size * BARREL.radius, kind);
+      const { radius, length } = { barrel: BARREL, table: TABLE, trunnion: TRUNNION }[shape];
+      const half = axis.clone().multiplyScalar((thin * length) / 2);
+      this.#along(ROUND, at.clone().sub(half), at.clone().add(half), thin * radius, kind);
       return;
     }
     const from = at.clone().addScaledVector(axis, -joint.travel);
-    if (Math.abs(joint.travel) > 0) this.#along(ROUND, from, at, size * RAIL, kind);
+    if (shape === "quill") this.#along(ROUND, from, at, thin * QUILL, kind);
+    else this.#rail(from, at, axis, thin, joint.body === 1 && !scene.bodies[0].lines.length, scene);
     const block = this.#mesh(BLOCK, kind);
     block.position.copy(at);
-    block.quaternion.setFromUnitVectors(UP, axis);
-    block.scale.setScalar(size * CARRIAGE);
+    block.quaternion.copy(levelAlong(axis));
+    block.scale.set(...CARRIAGE.map((part) => thin * part));
+  }
+
+  /** A beam that is longer than the way of its carriage; the first of a machine stands on legs if it lies. */
+  #rail(from, at, axis, thin, isFirst, scene) {
+    const sense = Math.sign(at.clone().sub(from).dot(axis)) || 1;
+    const [a, b] = [from.clone().addScaledVector(axis, -sense * BEAM.beyond * thin), at.clone().addScaledVector(axis, sense * BEAM.beyond * thin)];
+    this.#beam(a, b, thin * BEAM.height, thin * BEAM.width, "base");
+    if (!isFirst || this.isGhost || Math.abs(axis.z) > 0.5) return;
+    const floor = groundOf(extentOf(scene));
+    for (const top of [a, b]) this.#along(ROUND, new Vector3(top.x, top.y, floor), top, thin * LEG, "base");
   }
 
   /** A rod that grows: the cylinder of its drive around its first half. */
@@ -146,12 +196,15 @@ export class Figure {
     this.#along(ROUND, new Vector3(...start), new Vector3(...at), thin * size * CYLINDER, isRefused ? "refused" : "joint");
   }
 
-  #foot(position, size) {
+  /** A foot, or the table that carries the work; none below a beam, which has legs. */
+  #foot(position, size, shape) {
+    if (shape === "beam") return;
+    const [radius, height] = shape === "table" ? [0.13, 0.02] : [0.07, 0.06];
     const foot = this.#mesh(ROUND, "base");
     foot.position.set(...position);
-    foot.position.z -= size * 0.04;
+    foot.position.z -= size * (shape === "table" ? 0.5 * height : 0.04);
     foot.quaternion.setFromUnitVectors(UP, new Vector3(0, 0, 1));
-    foot.scale.set(size * 0.07, size * 0.06, size * 0.07);
+    foot.scale.set(size * radius, size * height, size * radius);
   }
 
   #tool({ position, rotation }, size, kind) {
@@ -199,25 +252,4 @@ function ringOf(lines) {
 
 function isSame(one, other) {
   return one.every((value, i) => value === other[i]);
-}
-
-/** The matrix of a frame. */
-export function matrixOf({ position, rotation }) {
-  const [a, b, c] = rotation;
-  return new Matrix4().set(...a, position[0], ...b, position[1], ...c, position[2], 0, 0, 0, 1);
-}
-
-export function quaternionFrom(frame) {
-  return new Quaternion().setFromRotationMatrix(matrixOf(frame));
-}
-
-/** The middle of all that is drawn, and the radius of a ball around it. */
-export function extentOf(scene) {
-  const points = scene.bodies.flatMap((body) => [body.frame.position, ...body.lines.flat()]);
-  const isGrown = (joint) => scene.bodies[joint.body].kind === "rod";
-  for (const joint of scene.joints.filter((one) => !isGrown(one))) points.push(joint.at, joint.at.map((value, i) => value - joint.travel * joint.axis[i]));
-  const low = [0, 1, 2].map((k) => Math.min(...points.map((point) => point[k])));
-  const high = [0, 1, 2].map((k) => Math.max(...points.map((point) => point[k])));
-  const centre = low.map((value, k) => (value + high[k]) / 2);
-  return { centre, size: Math.max(Math.hypot(...high.map((value, k) => value - low[k])), 1e-3), low, high };
 }

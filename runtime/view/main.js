@@ -5,6 +5,7 @@ import { AxesPanel } from "./axes.js";
 import { CopyPanel } from "./copy.js";
 import { element } from "./element.js";
 import { Live, tokenOf } from "./live.js";
+import { MachineChoice } from "./machines.js";
 import { meshesOf } from "./meshes.js";
 import { Model, inWords } from "./model.js";
 import { LinePanel } from "./plots.js";
@@ -26,11 +27,13 @@ class Page {
     this.data = JSON.parse(document.getElementById("page").textContent);
     this.model = new Model();
     const by = (id) => document.getElementById(id);
-    this.parts = Object.fromEntries(["machine", "state", "live", "refusal", "canvas", "labels", "panel", "move", "turn", "ghosts", "names", "fit", "start"].map((id) => [id, by(id)]));
+    this.parts = Object.fromEntries(["state", "live", "refusal", "canvas", "labels", "panel", "scale", "outside", "move", "turn", "ghosts", "names", "fit", "start"].map((id) => [id, by(id)]));
     this.stage = new Stage(this.parts.canvas, this.parts.labels, {
       onDrag: (frame, isFinished) => (isFinished ? this.#show("pose") : this.model.moveTo(frame)),
       onGhost: (index) => this.model.take(this.ghosts[index].axes),
+      onAssembly: () => this.model.setParameter(this.model.description.assembly, !this.model.parameters[this.model.description.assembly]),
       onView: () => this.#remember(),
+      onDrawn: (isInside) => { this.parts.outside.hidden = isInside; },
     });
     this.mode = "translate";
     this.ghosts = [];
@@ -42,7 +45,7 @@ class Page {
     const token = tokenOf(location.hash);
     this.isLive = token !== null; // the address stays that of the run
     this.#restore();
-    if (!this.model.name) this.model.open(this.model.names[0]);
+    if (!this.model.name) this.model.open(this.data.first);
     if (this.isLive) this.follow(token);
   }
 
@@ -61,12 +64,12 @@ class Page {
     const { model, stage } = this;
     this.solutions = new SolutionsPanel(model);
     const dimensions = new DimensionsPanel(model);
-    const shown = [new AxesPanel(model), new ToolPanel(model), new ConfigurationPanel(model), new MarginsPanel(model), this.solutions, dimensions];
+    const first = [this.solutions, new AxesPanel(model), new ToolPanel(model), new MarginsPanel(model), new ConfigurationPanel(model), dimensions];
     const line = new LinePanel(model, stage);
     this.line = line;
     this.slice = new SlicePanel(model, stage);
     const rest = [{ element: dimensions.second }, line, this.slice, new CopyPanel(model, this.data)];
-    this.parts.panel.append(...[...shown, ...rest].map((one) => one.element), this.#about());
+    this.parts.panel.append(...[...first, ...rest].map((one) => one.element), this.#about());
   }
 
   #about() {
@@ -89,11 +92,11 @@ class Page {
 
   #listen() {
     const { parts, model } = this;
-    for (const name of model.names) parts.machine.append(element("option", { value: name }, name));
-    parts.machine.addEventListener("change", () => {
+    this.choice = new MachineChoice(model, this.data, (name) => {
       if (!this.isLive) this.#say("", true);
-      model.open(parts.machine.value);
+      model.open(name);
     });
+    document.querySelector("header h1").after(this.choice.button);
     addEventListener("hashchange", () => location.hash.slice(1) !== this.written && this.#restore());
     const actions = {
       move: () => this.#handle("translate"), turn: () => this.#handle("rotate"),
@@ -102,9 +105,10 @@ class Page {
       fit: () => model.pose.scene.status || this.stage.fit(model.pose.scene), start: () => model.moveAxes(model.start),
     };
     const keys = { t: "move", r: "turn", g: "ghosts", n: "names", f: "fit", 0: "start" };
+    parts.outside.addEventListener("click", actions.fit);
     Object.entries(actions).forEach(([name, action]) => parts[name].addEventListener("click", action));
     addEventListener("keydown", (event) => {
-      const isTyping = event.target.matches("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey;
+      const isTyping = event.target.matches("input, select, textarea, dialog *") || event.ctrlKey || event.metaKey || event.altKey;
       const name = keys[event.key.toLowerCase()];
       if (name && !isTyping && model.pose) actions[name]();
       if (event.key in ZOOM && !isTyping) this.stage.closer(ZOOM[event.key]);
@@ -145,7 +149,7 @@ class Page {
     if (what === "refused parameter") return;
     const { pose, refusal } = model;
     if (what === "machine") {
-      parts.machine.value = model.name;
+      this.choice.show(model.name);
       document.title = `${model.name}: Softkin`;
       this.report.href = this.data.reports[model.name];
       this.summary.textContent = `${model.description.summary} ${model.description.notes.join(" ")}`;
@@ -157,6 +161,7 @@ class Page {
     else if (isWhole && what === "dimensions") stage.measure(pose.scene);
     const said = refusal ?? pose?.beyond ?? (isWhole ? null : pose?.scene);
     stage.figure.group.visible = isWhole;
+    parts.scale.textContent = isWhole ? `grid ${Number(stage.ground.step.toPrecision(1))} u` : "";
     if (isWhole) {
       this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
       stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => this.refusing.has(body) });
@@ -187,6 +192,7 @@ class Page {
     const scenes = this.ghosts.map((slot) => this.model.machine.scene(slot.axes, this.model.pose.frame));
     this.ghosts = this.ghosts.filter((_, i) => !scenes[i].status);
     this.stage.showGhosts(scenes.filter((scene) => !scene.status));
+    this.stage.showAssembly(this.hasGhosts ? this.model.otherAssembly() : null);
   }
 
   async #meshes() {
@@ -208,7 +214,7 @@ class Page {
 }
 
 /** The page, or in a sentence why there is none: a browser without WebGL 2 cannot draw it. */
-function shown() {
+function started() {
   performance.mark("program");
   try {
     return new Page();
@@ -221,4 +227,4 @@ function shown() {
 }
 
 if (typeof document === "undefined") serve();
-else globalThis.softkinPage = shown();
+else globalThis.softkinPage = started();

@@ -12,6 +12,7 @@ const SAME = 1e-6;
 
 export class Model {
   #heard = [];
+  #other = null;
 
   /** All names of machines, in the order of the catalogue. */
   names = Object.keys(catalogue);
@@ -135,6 +136,19 @@ export class Model {
       }
     }
     return known;
+  }
+
+  /** The machine at the same axes in the other assembly mode, as a scene; null where it has no other, or no pose there. */
+  otherAssembly() {
+    const { assembly } = this.description;
+    if (!assembly || !this.pose) return null;
+    if (this.#other?.of !== this.machine) {
+      this.#other = { of: this.machine, ...created(this.module, { ...this.parameters, [assembly]: !this.parameters[assembly] }) };
+    }
+    const { machine } = this.#other;
+    const found = machine?.forward(this.pose.axes);
+    const scene = found && !found.status ? machine.scene(this.pose.axes, found.frame) : null;
+    return scene && !scene.status ? scene : null;
   }
 
   /** What a slot is called: the names of its branches. */

@@ -67,7 +67,13 @@ export class SolutionsPanel {
   constructor(model) {
     this.model = model;
     this.list = element("ol", { class: "solutions", "aria-label": "Solutions for this frame" });
-    this.element = section("Solutions", true, this.list);
+    this.refused = element("ol", { class: "solutions", "aria-label": "Refused slots" });
+    this.count = element("summary", { class: "soft" });
+    this.others = element("details", { class: "refused" }, this.count, this.refused);
+    this.element = section("Solutions", true, this.list, this.others);
+    model.onChange((what) => {
+      if (what === "machine") this.list.style.minHeight = "0";
+    });
   }
 
   /** Solutions as the model gives them. */
@@ -75,14 +81,20 @@ export class SolutionsPanel {
     const { axes } = this.model.description;
     const entry = (slot) => {
       const name = this.model.nameOf(slot.branches ?? []);
-      if (slot.status) return element("li", {}, element("span", { class: "soft" }, `${name}: ${slot.words}`));
+      if (slot.status) return element("li", { class: "soft" }, name && slot.branches ? `${name}: ${slot.words}` : slot.words);
       const values = slot.axes.map((value, i) => `${axes[i].name} ${shown(value, 2)}`).join("  ");
       const button = element("button", { "aria-pressed": String(slot.isPresent), click: () => this.model.take(slot.axes) }, name, element("small", {}, values));
       return element("li", {}, button);
     };
     const held = this.list.contains(document.activeElement) ? [...this.list.querySelectorAll("button")].indexOf(document.activeElement) : -1;
-    this.list.replaceChildren(...solutions.map(entry));
+    const refused = solutions.filter((slot) => slot.status);
+    this.list.replaceChildren(...solutions.filter((slot) => !slot.status).map(entry));
     this.list.querySelectorAll("button")[held]?.focus();
+    this.refused.replaceChildren(...refused.map(entry));
+    this.count.textContent = `${refused.length} refused`;
+    this.others.hidden = !refused.length;
+    this.element.hidden = !solutions.length;
+    this.list.style.minHeight = `${Math.max(parseFloat(this.list.style.minHeight), this.list.clientHeight)}px`; // what is below stays in its place
   }
 }
 

@@ -2,10 +2,16 @@
 
 import { element, numberIn, section, shown } from "./element.js";
 
-const CELLS = 96;
+/** Cells along a side, and the parts along a side of a cell at a border. */
+const [CELLS, FINE] = [96, 4];
 const PLANES = { XY: [0, 1, 2], XZ: [0, 2, 1], YZ: [1, 2, 0] };
 /** From singular to far from it, and from one solution to many: readable without telling red from green. */
 const STOPS = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+const REACHED = [46, 134, 171];
+/** How much a colour covers, of 255: the machine is seen through it. */
+const COVER = 120;
+/** Numbers that are typed, or a slider that moves, are waited for. */
+const AGAIN_AFTER = 200;
 
 export class SlicePanel {
   #worker = null;
@@ -14,8 +20,8 @@ export class SlicePanel {
     Object.assign(this, { model, stage });
     const choice = (id, names) => element("select", { id }, ...names.map(([value, name]) => element("option", { value }, name)));
     this.plane = choice("slice-plane", Object.keys(PLANES).map((name) => [name, name]));
-    this.height = element("input", { type: "number", step: "any", id: "slice-height", "aria-label": "Height of the slice" });
-    this.what = element("select", { id: "slice-what", "aria-label": "Colour by" });
+    this.height = element("input", { type: "number", step: "any", id: "slice-height", "aria-label": "Height of the slice", input: () => this.#again() });
+    this.what = element("select", { id: "slice-what", "aria-label": "Colour by", change: () => this.#again() });
     this.progress = element("progress", { max: CELLS, value: 0, "aria-label": "Progress of the slice", hidden: true });
     this.said = element("p", { role: "status", class: "soft" });
     this.legend = element("div", { class: "legend" });
@@ -28,9 +34,16 @@ export class SlicePanel {
       this.progress, this.legend, this.said);
     this.plane.addEventListener("change", () => this.#atTool());
     model.onChange((what) => {
+      if (what === "machine") this.#clear();
       if (what === "machine") this.#offer();
-      if (what === "machine" || what === "dimensions") this.#clear();
+      if (what === "dimensions") this.#again();
     });
+  }
+
+  /** Another choice: what is shown, or computed, is computed again. */
+  #again() {
+    clearTimeout(this.waiting);
+    if (this.#worker || this.stage.slice) this.waiting = setTimeout(() => this.#begin(), AGAIN_AFTER);
   }
 
   #offer() {
@@ -45,12 +58,14 @@ export class SlicePanel {
   #atTool() {
     const { pose } = this.model;
     if (pose) this.height.value = shown(pose.frame.position[PLANES[this.plane.value][2]], 4);
+    this.#again();
   }
 
   #begin() {
     const { model } = this;
     const height = numberIn(this.height);
     if (!model.pose || !this.stage.extent || height === null) return;
+    this.#stop("");
     const [along, up, across] = PLANES[this.plane.value];
     const { centre, size } = this.stage.extent;
     const half = 1.25 * size;
@@ -59,14 +74,15 @@ export class SlicePanel {
     const basis = [along, up].map((k) => [0, 1, 2].map((i) => (i === k ? 2 * half : 0)));
     this.corners = [origin, ...basis];
     this.values = [];
-    this.canvas = element("canvas", { width: CELLS, height: CELLS });
+    this.parts = [];
+    this.canvas = element("canvas", { width: CELLS * FINE, height: CELLS * FINE });
     const address = URL.createObjectURL(new Blob([document.getElementById("program").textContent], { type: "text/javascript" }));
     this.#worker = new Worker(address);
     URL.revokeObjectURL(address);
     this.#worker.onmessage = ({ data }) => this.#receive(data);
     this.#worker.onerror = ({ message }) => this.#stop(`The slice failed: ${message}`);
     this.#worker.postMessage({
-      name: model.name, parameters: model.parameters, cells: CELLS, corners: this.corners, rotation: model.pose.frame.rotation,
+      name: model.name, parameters: model.parameters, cells: CELLS, fine: FINE, corners: this.corners, rotation: model.pose.frame.rotation,
       what: this.what.value, bytes: model.branches(), reference: model.axes,
     });
     this.progress.hidden = false;
@@ -74,11 +90,12 @@ export class SlicePanel {
     this.said.textContent = "Computing …";
   }
 
-  #receive({ until, rows }) {
+  #receive({ until, rows, parts }) {
     this.values.push(...rows);
+    this.parts = parts ?? [];
     this.progress.value = until;
     this.#paint();
-    if (until < CELLS) return;
+    if (!parts) return;
     const all = this.values.flatMap((row) => [...row]);
     const reached = all.filter((value) => value >= 0).length;
     this.#stop(`${((100 * reached) / all.length).toFixed(1)} % of the slice is reached, with the rotation of this pose.`);
@@ -86,22 +103,27 @@ export class SlicePanel {
 
   #paint() {
     const context = this.canvas.getContext("2d");
-    const image = context.createImageData(CELLS, CELLS);
-    const most = this.what.value === "number" ? Math.max(1, ...this.values.map((row) => Math.max(...row))) : 1;
-    this.values.forEach((row, i) => row.forEach((value, k) => {
-      const colour = value < 0 ? [128, 128, 128, 40] : [...tint(value / most), 255];
-      image.data.set(colour, 4 * (i * CELLS + k));
-    }));
-    context.putImageData(image, 0, 0);
+    const kind = this.what.value;
+    const most = kind === "number" ? Math.max(1, ...this.values.map((row) => Math.max(...row))) : 1;
+    const tinted = (value) => (kind === "reach" ? REACHED : tint(value / most));
+    const paint = (value, x, y, size) => {
+      context.fillStyle = value < 0 ? "transparent" : `rgb(${tinted(value).join(" ")} / ${COVER / 255})`;
+      context.clearRect(x, y, size, size);
+      context.fillRect(x, y, size, size);
+    };
+    this.values.forEach((row, i) => row.forEach((value, k) => paint(value, k * FINE, i * FINE, FINE)));
+    for (const { row, column, values } of this.parts) {
+      values.forEach((value, k) => paint(value, column * FINE + (k % FINE), row * FINE + Math.floor(k / FINE), 1));
+    }
     this.stage.showSlice(this.canvas, this.corners);
-    const entries = this.what.value === "reach" ? [[1, "reached"]]
-      : this.what.value === "number" ? Array.from({ length: most }, (_, i) => [(i + 1) / most, String(i + 1)])
+    const entries = kind === "reach" ? [[1, "reached"]]
+      : kind === "number" ? Array.from({ length: most }, (_, i) => [(i + 1) / most, String(i + 1)])
         : [[0, "0, singular"], [0.5, "0.5"], [1, "1"]];
     this.legend.replaceChildren(...entries.map(([value, name]) => {
       const key = element("i");
-      key.style.background = `rgb(${tint(value).join()})`;
+      key.style.background = `rgb(${tinted(value * most).join()})`;
       return element("span", {}, key, name);
-    }), element("span", {}, "grey: not reached"));
+    }), element("span", {}, "no colour: not reached"));
   }
 
   #stop(words) {
@@ -114,6 +136,7 @@ export class SlicePanel {
   }
 
   #clear() {
+    clearTimeout(this.waiting);
     this.#stop("");
     this.legend.replaceChildren();
     this.stage.showSlice(null);

@@ -1,22 +1,24 @@
 /** The picture: camera, light, floor, the machine, its ghosts, the tool's frame that is dragged, a path, a slice. */
 
 import {
-  AmbientLight, AxesHelper, BufferAttribute, BufferGeometry, CanvasTexture, DirectionalLight, DoubleSide, GridHelper, Group,
-  HemisphereLight, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, NearestFilter, Object3D, PerspectiveCamera, PlaneGeometry,
-  Raycaster, Scene, Vector2, WebGLRenderer,
+  BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Object3D,
+  PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Vector2, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
-import { COLOURS, Figure, extentOf, quaternionFrom } from "./figure.js";
+import { lights, lookAt, rangeOf } from "./camera.js";
+import { COLOURS, Figure } from "./figure.js";
+import { Ground, lettersOf, triad } from "./ground.js";
+import { Labels } from "./labels.js";
 import { rowsOf } from "./pose.js";
+import { extentOf, pointsOf, quaternionFrom, stand } from "./space.js";
 
-const FLOOR = { light: [0xb9c2cc, 0xdde3ea], dark: [0x3c4652, 0x2a323b] };
-
-/** The direction from which one looks at first, of length one, and the room around the ball of the machine. */
-const FROM = [0.605, -0.658, 0.447];
-const ROOM = 1.12;
-/** Width and height of a label in pixels: two do not stand closer. */
-const LABEL = [36, 15];
+/** The size of the frame of the base, of the machine's. */
+const BASE = 0.1;
+/** A label is shown at the border for what is so many pixels above it. */
+const ABOVE = 40;
+/** A point is outside so far beyond the border of the picture, of half its width. */
+const OUTSIDE = 1.02;
 
 export class Stage {
   #ghosts = [];
@@ -24,25 +26,30 @@ export class Stage {
   #meshes = new Map();
   #fitted = null;
 
-  /** heard: {onDrag(frame, isFinished), onGhost(index), onView()}. */
+  /** heard: {onDrag(frame, isFinished), onGhost(index), onAssembly(), onView(), onDrawn(isInside)}. */
   constructor(canvas, labels, heard) {
     this.canvas = canvas;
     this.labels = labels;
+    this.names = new Labels(labels);
     this.heard = heard;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.debug.checkShaderErrors = false;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(38, 1, 1, 1e5);
     this.camera.up.set(0, 0, 1);
-    this.#light();
+    this.scene.add(...lights());
+    this.world = new Group(); // what is given in the frame of the work
     this.figure = new Figure();
-    this.scene.add(this.figure.group);
-    this.floor = new Group();
+    this.world.add(this.figure.group);
+    this.ground = new Ground();
+    this.floor = this.ground.group;
     this.extra = new Group();
-    this.scene.add(this.floor, this.extra);
-    this.triad = new AxesHelper(1);
-    this.origin = new AxesHelper(1);
-    this.scene.add(this.triad, this.origin);
+    this.scene.add(this.floor, this.world);
+    this.triad = triad();
+    this.origin = triad();
+    this.assembly = new Figure({ isGhost: true, ghost: "assembly" });
+    this.assembly.group.visible = false;
+    this.world.add(this.assembly.group, this.extra, this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.listenToKeyEvents(canvas);
     this.orbit.addEventListener("change", () => {
@@ -58,18 +65,17 @@ export class Stage {
   /** The colours of a theme, "light" or "dark". */
   paint(theme) {
     this.theme = theme;
-    [this.figure, ...this.#ghosts].forEach((figure) => figure.paint(COLOURS[theme]));
+    [this.figure, this.assembly, ...this.#ghosts].forEach((figure) => figure.paint(COLOURS[theme]));
     if (this.extent) this.#layFloor();
     this.ask();
   }
 
   /** Take the size of a machine from its scene. */
   measure(scene) {
-    this.extent = extentOf(scene);
+    stand(this.world, scene);
+    this.extent = extentOf(scene, this.world);
     this.size = this.extent.size;
-    this.camera.near = this.size / 100;
-    this.camera.far = this.size * 60;
-    this.camera.updateProjectionMatrix();
+    rangeOf(this.camera, this.size);
     this.#layFloor();
     this.ask();
   }
@@ -96,11 +102,9 @@ export class Stage {
   /** Look at all of a machine. */
   fit(scene) {
     this.measure(scene);
-    const { centre, size } = this.extent;
+    const { centre } = this.extent;
     this.orbit.target.set(...centre);
-    const narrow = Math.min(1, this.camera.aspect) * Math.tan((this.camera.fov / 2) * (Math.PI / 180));
-    const away = (ROOM * size) / 2 / Math.sin(Math.atan(narrow));
-    this.camera.position.set(...FROM.map((value, i) => centre[i] + away * value));
+    lookAt(this.camera, this.extent);
     this.orbit.update();
     this.#fitted = [...this.camera.position.toArray(), ...centre];
     this.ask();
@@ -109,7 +113,8 @@ export class Stage {
   /** Show a scene, and the frame that is wanted where it is not that of the tool. */
   show(scene, target, options) {
     this.figure.show(scene, this.size, { ...options, hidden: new Set(this.#meshes.keys()) });
-    this.joints = scene.joints;
+    this.shown = scene;
+    if (!this.isDragged) stand(this.world, scene);
     const tool = scene.bodies[scene.bodies.length - 1].frame;
     this.#place(this.triad, tool, 0.14);
     this.#meshes.forEach((mesh, name) => {
@@ -126,12 +131,20 @@ export class Stage {
     while (this.#ghosts.length < scenes.length) {
       const ghost = new Figure({ isGhost: true, colours: COLOURS[this.theme] });
       this.#ghosts.push(ghost);
-      this.scene.add(ghost.group);
+      this.world.add(ghost.group);
     }
     this.#ghosts.forEach((ghost, i) => {
       ghost.group.visible = i < scenes.length;
       if (ghost.group.visible) ghost.show(scenes[i], this.size);
     });
+    this.ask();
+  }
+
+  /** The scene of the same axes in the other assembly mode, seen through; null takes it away. */
+  showAssembly(scene) {
+    this.assembly.group.visible = Boolean(scene);
+    this.other = scene;
+    if (scene) this.assembly.show(scene, this.size);
     this.ask();
   }
 
@@ -172,12 +185,11 @@ export class Stage {
     }
     if (picture) {
       const map = new CanvasTexture(picture);
-      map.magFilter = NearestFilter;
       const geometry = new PlaneGeometry(1, 1);
       const [origin, along, up] = corners;
       const at = (a, b) => origin.map((value, i) => value + a * along[i] + b * up[i]);
       [at(0, 1), at(1, 1), at(0, 0), at(1, 0)].forEach((point, i) => geometry.getAttribute("position").setXYZ(i, ...point));
-      const material = new MeshBasicMaterial({ map, transparent: true, opacity: 0.75, side: DoubleSide, depthWrite: false });
+      const material = new MeshBasicMaterial({ map, transparent: true, side: DoubleSide, depthWrite: false });
       this.slice = new Mesh(geometry, material);
       this.slice.frustumCulled = false;
       this.extra.add(this.slice);
@@ -190,7 +202,7 @@ export class Stage {
     const holder = new Object3D();
     holder.add(mesh);
     this.#meshes.set(name, holder);
-    this.scene.add(holder);
+    this.world.add(holder);
   }
 
   clearBodies() {
@@ -211,30 +223,21 @@ export class Stage {
   draw() {
     this.renderer.render(this.scene, this.camera);
     this.#label();
+    if (this.shown) this.heard.onDrawn(pointsOf(this.shown).every((point) => this.#isInside(point)));
     if (this.figure.group.children.length && !this.isDrawn) performance.mark("first picture");
     this.isDrawn ||= this.figure.group.children.length > 0;
   }
 
   /** Where the tool's handle is on the screen, in pixels of the page. */
   placeOf(position) {
-    const point = this.handle.position.clone().set(...position).project(this.camera);
+    const point = this.#projected(position);
     const box = this.canvas.getBoundingClientRect();
     return [box.left + ((point.x + 1) / 2) * box.width, box.top + ((1 - point.y) / 2) * box.height];
   }
 
-  #light() {
-    const sun = new DirectionalLight(0xffffff, 2.1);
-    sun.position.set(2, -3, 4);
-    const other = new DirectionalLight(0xffffff, 0.7);
-    other.position.set(-3, 2, 1);
-    const sky = new HemisphereLight(0xffffff, 0x8890a0, 1.0);
-    sky.position.set(0, 0, 1);
-    this.scene.add(sun, other, sky, new AmbientLight(0xffffff, 0.35));
-  }
-
   #handles() {
     this.handle = new Object3D();
-    this.scene.add(this.handle);
+    this.world.add(this.handle);
     this.transform = new TransformControls(this.camera, this.canvas);
     this.transform.setSize(0.75);
     this.transform.attach(this.handle);
@@ -262,16 +265,8 @@ export class Stage {
   }
 
   #layFloor() {
-    this.floor.children.forEach((grid) => grid.dispose());
-    this.floor.clear();
-    const { low, centre, size } = this.extent;
-    const step = 10 ** Math.round(Math.log10(size / 10));
-    const count = Math.ceil((1.6 * size) / step) * 2;
-    const grid = new GridHelper(count * step, count, ...FLOOR[this.theme]);
-    grid.rotation.x = Math.PI / 2;
-    grid.position.set(Math.round(centre[0] / step) * step, Math.round(centre[1] / step) * step, Math.min(low[2], 0) - 0.07 * size);
-    this.floor.add(grid);
-    this.origin.scale.setScalar(0.1 * size);
+    this.ground.lay(this.extent, this.theme);
+    this.origin.scale.setScalar(BASE * this.size);
   }
 
   #clicked(event) {
@@ -285,27 +280,33 @@ export class Stage {
     ray.setFromCamera(point, this.camera);
     const shown = this.#ghosts.filter((ghost) => ghost.group.visible).map((ghost) => ghost.group);
     const hit = ray.intersectObjects(shown, true).find(({ object }) => object.visible);
+    if (!hit && this.other && ray.intersectObject(this.assembly.group, true).some(({ object }) => object.visible)) this.heard.onAssembly();
     if (!hit) return;
     this.heard.onGhost(shown.findIndex((group) => group.children.includes(hit.object)));
   }
 
-  /** The names of the joints beside them. */
+  /** The names of the joints beside them, the letters of the base, and what a ghost of an assembly mode is. */
   #label() {
-    const box = this.canvas.getBoundingClientRect();
-    const joints = this.labels.hidden || !this.joints ? [] : this.joints;
-    while (this.labels.children.length < joints.length) this.labels.append(document.createElement("span"));
-    const taken = [];
-    [...this.labels.children].forEach((label, i) => {
-      label.hidden = i >= joints.length;
-      if (label.hidden) return;
-      const point = this.handle.position.clone().set(...joints[i].at).project(this.camera);
-      label.textContent = joints[i].joints.join(" ");
-      const x = ((point.x + 1) / 2) * box.width + 8;
-      let y = ((1 - point.y) / 2) * box.height - 22;
-      while (taken.some((other) => Math.abs(other[0] - x) < LABEL[0] && Math.abs(other[1] - y) < LABEL[1])) y -= LABEL[1];
-      taken.push([x, y]);
-      label.style.transform = `translate(${x}px, ${y}px)`;
-    });
+    if (this.labels.hidden || !this.shown) return;
+    const { width, height } = this.canvas.getBoundingClientRect();
+    const placed = (point) => {
+      const { x, y } = this.#projected(point);
+      return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
+    };
+    const letters = lettersOf(BASE * this.size).map(({ text, at }) => ({ text, at: placed(at).map((value) => value - 7), isFixed: true }));
+    const other = this.other?.bodies.slice(-1).map(({ frame }) => ({ text: "other assembly mode", at: placed(frame.position) })) ?? [];
+    const joints = this.shown.joints.map((joint) => ({ text: joint.joints.join(" "), at: placed(joint.at) }));
+    const seen = [...letters, ...joints, ...other].filter(({ at: [x, y] }) => x > 0 && x < width && y > -ABOVE && y < height);
+    this.names.show(seen, placed(this.handle.position.toArray()));
+  }
+
+  #projected(point) {
+    return this.handle.position.clone().set(...point).applyMatrix4(this.world.matrixWorld).project(this.camera);
+  }
+
+  #isInside(point) {
+    const { x, y, z } = this.#projected(point);
+    return Math.abs(x) < OUTSIDE && Math.abs(y) < OUTSIDE && z < 1;
   }
 
   #resize() {

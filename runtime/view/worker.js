@@ -5,25 +5,41 @@ import { catalogue } from "./machines/index.js";
 
 const ROWS_A_MESSAGE = 4;
 
-/** Answer the message of `SlicePanel`: for every cell a number, -1 where nothing reaches it. */
+/** Answer the message of `SlicePanel`: for every cell a number, -1 where nothing reaches it; then for parts of cells at a border. */
 export function serve() {
   self.onmessage = ({ data }) => {
     const { machine } = created(catalogue[data.name], data.parameters);
+    const { cells, fine } = data;
+    const all = [];
     let rows = [];
-    for (let row = 0; row < data.cells; row += 1) {
-      rows.push(Float32Array.from({ length: data.cells }, (_, column) => valueAt(machine, data, row, column)));
-      if (rows.length === ROWS_A_MESSAGE || row === data.cells - 1) {
+    for (let row = 0; row < cells; row += 1) {
+      rows.push(Float32Array.from({ length: cells }, (_, column) => valueAt(machine, data, (column + 0.5) / cells, (row + 0.5) / cells)));
+      if (rows.length === ROWS_A_MESSAGE || row === cells - 1) {
         self.postMessage({ until: row + 1, rows });
+        all.push(...rows);
         rows = [];
       }
     }
+    const parts = bordersOf(all, data.what === "number").map(([row, column]) => ({ row, column, values: Float32Array.from({ length: fine * fine },
+      (_, k) => valueAt(machine, data, (column + ((k % fine) + 0.5) / fine) / cells, (row + (Math.floor(k / fine) + 0.5) / fine) / cells)) }));
+    self.postMessage({ until: cells, rows: [], parts });
   };
 }
 
-function valueAt(machine, { cells, corners, rotation, what, bytes, reference }, row, column) {
+/** The cells beside which, or at a corner of which, another answer is: reached or not, or another number. */
+function bordersOf(rows, isNumber) {
+  const kind = (row, column) => (isNumber ? rows[row]?.[column] : rows[row]?.[column] >= 0);
+  const around = [-1, 0, 1].flatMap((i) => [-1, 0, 1].map((k) => [i, k]));
+  return rows.flatMap((values, row) => [...values.keys()].filter((column) => around.some(([i, k]) => {
+    const isInside = rows[row + i]?.[column + k] !== undefined;
+    return isInside && kind(row + i, column + k) !== kind(row, column);
+  })).map((column) => [row, column]));
+}
+
+/** a, down: the place in the slice, from 0 to 1 along it and from its top. */
+function valueAt(machine, { corners, rotation, what, bytes, reference }, a, down) {
   const [origin, along, up] = corners;
-  const [a, b] = [(column + 0.5) / cells, 1 - (row + 0.5) / cells];
-  const frame = { position: origin.map((value, i) => value + a * along[i] + b * up[i]), rotation };
+  const frame = { position: origin.map((value, i) => value + a * along[i] + (1 - down) * up[i]), rotation };
   if (what === "number") {
     const found = machine.inverseAll(frame, reference);
     const answers = found.status ? [] : found.slots.filter((slot) => !slot.status);

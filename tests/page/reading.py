@@ -31,10 +31,12 @@ def parsed(text: str) -> ET.Element:
 
 
 def section(page: ET.Element, anchor: str) -> list[ET.Element]:
-    """The elements from the heading with an id to the next heading of its rank, at most."""
+    """The elements from the heading with an id to the next heading of its rank, at most; what is folded under an id."""
     body = next(e for e in page if tag(e) == "body")
     children = list(body)
     start = next(k for k, e in enumerate(children) if e.get("id") == anchor)
+    if tag(children[start]) == "details":
+        return [children[start]]
     ranks = ("h2",) if tag(children[start]) == "h2" else ("h2", "h3")
     end = next((k for k in range(start + 1, len(children)) if tag(children[k]) in ranks), len(children))
     return children[start:end]

@@ -57,6 +57,42 @@ def test_parameters_and_singularities_are_named(name: str) -> None:
     assert shown == [f"margin-{m.name}" for m in kinematics.margins]
 
 
+@EACH
+def test_what_repeats_the_derivation_is_folded(name: str) -> None:
+    """Programs stand folded, the lines of a step do not; lengths stand before limits, which are folded."""
+    folded = {e.get("id"): e for e in every([tree(name)], "details") if e.get("open") is None}
+    assert len(folded) == len(list(every([tree(name)], "details")))
+    programs = list(every([tree(name)], "ol", "program"))
+    inside = [p for one in folded.values() for p in every([one], "ol", "program")]
+    assert inside
+    own = [*every(section(tree(name), "derivation"), "ol", "program"), *every(section(tree(name), "jacobian"), "ol")]
+    assert all(p in inside or p in own for p in programs)
+    plain = [e for e in section(tree(name), "machine") if has_class(e, "wide")]
+    tables = ["".join(t.itertext()) for t in every(plain, "table")]
+    limits = [p.name for p in kinematics_of(named(name)).parameters if p.name.startswith(("lower_", "offset_"))]
+    settings = "".join(folded["settings"].itertext())
+    assert all(limit in settings and not any(limit in table for table in tables) for limit in limits)
+
+
+@WITH_AXES
+def test_the_meaning_of_a_branch_is_read(name: str) -> None:
+    """Where the page says that a branch has its first name, and only there, its sign is that of byte 1."""
+    mechanism, values = kinematics_of(named(name)).mechanism, samples(name)
+    items = [item for shown in every(section(tree(name), "branches"), "ul", "signs") for item in shown]
+    known = spelled(name, values)
+    for joint in mechanism.joints:
+        plain = values[joint.axis.name] - values[joint.offset.name]
+        known[spelling(name)(str(joint.symbol))] = np.radians(plain) if joint.in_degrees else plain
+    for branch, item in zip(mechanism.branches, items, strict=True):
+        words = "".join(item.itertext())
+        assert f"{branch.name}: 1 is {branch.names[0]}, 2 is {branch.names[1]}" in words
+        if branch.is_crossing or branch.meanings[0]:
+            assert f"In {branch.names[0]} " in words and branch.meanings[0] in words
+        elif not mechanism.drives and not any(j.is_geared or j.coupling for j in mechanism.joints):
+            first = value_of(maths(item), known)  # elsewhere a joint is not its axis less its offset
+            np.testing.assert_array_equal(first, values[f"sigma_{branch.name}"] > 0, err_msg=branch.name)
+
+
 def _steps(name: str) -> list[tuple[Step, ...]]:
     mechanism = with_derived_assembly(with_search(prepared(named(name))))
     if mechanism.search is None:

@@ -35,10 +35,10 @@ async function opened(fragment, { size = SMALL, theme = "light", file = catalogu
 }
 
 /** A picture at a size; what comes before it is drawn smaller, which takes a software renderer less. */
-async function pictured(page, size, name) {
+async function pictured(page, size, name, isFitted = true) {
   await page.setViewportSize(size);
   await settled(page);
-  await page.evaluate(() => document.getElementById("fit").click());
+  if (isFitted) await page.evaluate(() => document.getElementById("fit").click());
   await settled(page);
   await page.screenshot({ path: `${pictures}/${name}.png` });
 }
@@ -51,7 +51,13 @@ async function everyMachine() {
     const found = {};
     for (const name of model.names) {
       model.open(name);
-      const others = [stage.floor, stage.transformed, stage.triad, stage.origin];
+      stage.draw();
+      const labels = [...document.querySelectorAll("#labels span:not([hidden])")].map((one) => {
+        const { x, y, width, height } = one.getBoundingClientRect();
+        return { text: one.textContent, kind: one.className, x, y, width, height };
+      });
+      const isOutside = !document.getElementById("outside").hidden;
+      const others = [stage.floor, stage.transformed, stage.triad, stage.origin, stage.assembly.group];
       const were = others.map((one) => one.visible);
       others.forEach((one) => { one.visible = false; });
       stage.showGhosts([]);
@@ -63,7 +69,7 @@ async function everyMachine() {
       for (let i = 3; i < pixels.length; i += 4) covered += pixels[i] > 0;
       others.forEach((one, i) => { one.visible = were[i]; });
       found[name] = {
-        covered, refusal: model.refusal, axes: model.axes, frame: model.pose?.frame ?? null, configuration: model.pose?.configuration ?? [],
+        covered, labels, isOutside, shapes: stage.figure.shapes, scale: document.getElementById("scale").textContent, refusal: model.refusal, axes: model.axes, frame: model.pose?.frame ?? null, configuration: model.pose?.configuration ?? [],
         parameters: model.parameters, solutions: model.solutions().filter((slot) => !slot.status).length, margins: model.pose?.singularity.margins,
         isLabelled: [...document.querySelectorAll("input, select, button")].every((one) => one.labels?.length || one.ariaLabel || one.getAttribute("aria-labelledby") || one.textContent.trim()),
       };
@@ -181,6 +187,10 @@ async function typed() {
   await page.locator("#tool-X").fill("700");
   await settled(page);
   seen.refused = await state(page);
+  seen.refusedSlots = await page.evaluate(() => {
+    const { open, textContent } = document.querySelector(".refused");
+    return { open, textContent, listed: softkinPage.solutions.list.children.length };
+  });
   seen.refusedAddress = await page.evaluate(() => location.hash);
   const other = await opened(seen.refusedAddress);
   seen.refusedRestored = await state(other);
@@ -294,18 +304,20 @@ async function marks() {
 async function slice() {
   const page = await opened("#machine=Kin_Scara2_Z&axes=20,60,-20", { theme: "dark" });
   await unfold(page, "^(Slice|Singul)");
-  const computed = async (what) => {
+  const computed = async (what, isFirst) => {
+    await page.evaluate(() => { globalThis.last = softkinPage.slice.values; });
     await page.locator("#slice-what").selectOption(what);
-    await page.getByRole("button", { name: "Compute" }).click();
-    await page.waitForFunction(() => softkinPage.stage.slice && /of the slice is reached/.test(document.getElementById("panel").textContent));
+    if (isFirst) await page.getByRole("button", { name: "Compute" }).click(); // later another choice is computed by itself
+    await page.waitForFunction(() => softkinPage.slice.values !== last && /of the slice is reached/.test(document.getElementById("panel").textContent));
     return page.evaluate(() => {
       const { slice } = softkinPage;
-      return { corners: slice.corners, values: slice.values.map((row) => [...row]) };
+      const parts = slice.parts.map(({ row, column, values }) => ({ row, column, values: [...values] }));
+      return { corners: slice.corners, values: slice.values.map((row) => [...row]), parts };
     });
   };
-  seen.slice = await computed("number");
+  seen.slice = await computed("number", true);
   seen.slicePose = await state(page);
-  seen.margin = await computed("elbow");
+  seen.margin = await computed("elbow", false);
   await pictured(page, LAPTOP, "laptop_dark");
   await page.context().close();
 }
@@ -333,6 +345,86 @@ async function own() {
   const other = await opened("#machine=nonsense", { file: ownPage });
   seen.own.unknown = await other.locator("#live").textContent();
   await other.context().close();
+}
+
+/** The choice of a machine: families, pictures, a search by each of the names; then the one that is found. */
+async function chosen() {
+  const page = await opened("", { size: LAPTOP });
+  const search = async (words) => {
+    await page.locator("#choice input").fill(words);
+    return page.evaluate(() => [...document.querySelectorAll("#choice .cards button")].filter((one) => one.checkVisibility()).map((one) => one.childNodes[1].textContent));
+  };
+  const pictures = () => [...document.querySelectorAll("#choice canvas")].filter((one, i, all) => one.toDataURL() !== all.at(-1).toDataURL()).length; // the last is not in view
+  seen.choice = { first: await state(page), sections: await page.locator("#panel > details > summary").allTextContents() };
+  await page.locator("#machine").click();
+  await page.waitForFunction(pictures);
+  await settled(page);
+  await pictured(page, LAPTOP, "choice_light", false);
+  Object.assign(seen.choice, {
+    families: await page.locator("#choice h2").allTextContents(), all: await search(""), pictures: await page.evaluate(pictures),
+    byBlock: await search("Softkin_Scara3_Z"), byClass: await search("scara3z "), byWords: await search("six axes"), none: await search("nonsense"),
+    said: await page.locator("#choice [role=status]").textContent(),
+  });
+  await search("Softkin_Scara3_Z");
+  await page.locator("#choice input").press("Enter");
+  seen.choice.taken = await page.evaluate(() => ({ name: softkinPage.model.name, isOpen: document.getElementById("choice").open, button: document.getElementById("machine").textContent }));
+  await page.locator("#machine").click();
+  await page.locator("#choice").getByRole("button", { name: "Close" }).click();
+  await page.locator("#machine").click();
+  await page.locator("#choice .cards button", { hasText: "Kin_Gantry2" }).click();
+  seen.choice.clicked = await page.evaluate(() => ({ name: softkinPage.model.name, isOpen: document.getElementById("choice").open }));
+  await page.context().close();
+}
+
+/** A machine that leaves the picture, by the camera and by an axis: it is brought back by the button that is offered. */
+async function left() {
+  const page = await opened("#machine=Kin_Gantry3");
+  const isOffered = async () => {
+    await settled(page);
+    return page.locator("#outside").isVisible();
+  };
+  seen.brought = [await isOffered()];
+  for (let i = 0; i < 12; i += 1) await page.locator("#canvas").press("+");
+  seen.brought.push(await isOffered());
+  await page.locator("#outside").click();
+  seen.brought.push(await isOffered());
+  await page.locator("#axis-1").fill("4000");
+  seen.brought.push(await isOffered());
+  await page.locator("#outside").click();
+  seen.brought.push(await isOffered());
+  await page.context().close();
+}
+
+/** The other assembly mode of a delta, seen through, and taken by a click. */
+async function assembled() {
+  const page = await opened("#machine=Softkin_Delta_C&axes=10,20,30,40", { size: LAPTOP });
+  seen.assembly = { before: await state(page), labels: await page.locator("#labels span:not([hidden])").allTextContents() };
+  Object.assign(seen.assembly, await page.evaluate(() => {
+    const { stage } = softkinPage;
+    const { position, rotation } = stage.other.bodies.at(-1).frame;
+    return { there: position, click: stage.placeOf(position.map((value, i) => value - 0.04 * stage.size * rotation[i][2])) };
+  }));
+  await page.mouse.click(...seen.assembly.click);
+  await settled(page);
+  seen.assembly.after = await state(page);
+  await page.locator("#ghosts").click();
+  seen.assembly.hidden = await page.evaluate(() => !softkinPage.stage.assembly.group.visible);
+  await page.context().close();
+}
+
+/** Machines with tables, their first two turns moved: the directions of the last slide, and of Z of the work, as they are seen. */
+async function tilted() {
+  const page = await opened("");
+  seen.tilted = await page.evaluate(() => Object.fromEntries(["Softkin_TableTable_AC", "Softkin_NutatingTable_BC", "Softkin_HeadTable_AC", "Kin_Gantry3"].map((name) => {
+    const { model, stage } = softkinPage;
+    model.open(name);
+    const slide = () => model.pose.scene.joints.filter(({ kind }) => kind === "slide").at(-1).axis;
+    const directions = () => [slide(), [0, 0, 1]].map((axis) => stage.camera.up.clone().set(...axis).transformDirection(stage.world.matrixWorld).toArray());
+    const before = directions();
+    model.moveAxes(model.axes.map((value, i) => (model.description.axes[i].unit === "deg" ? value + 20 : value)));
+    return [name, { before, after: directions() }];
+  })));
+  await page.context().close();
 }
 
 /** A controller, played by a socket that the page is given: its machine, axes that move it, axes that must not. */
@@ -387,7 +479,7 @@ async function ownAgain() {
   await page.context().close();
 }
 
-for (const work of [live, ownAgain, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
+for (const work of [live, ownAgain, chosen, left, assembled, tilted, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

@@ -54,6 +54,7 @@ def description(kin: Kinematics, module: str) -> dict[str, Any]:
         "axes": [_axis(joint, joint.name in held) for joint in mechanism.joints],
         "parameters": [_parameter(p, names[p.name]) for p in kin.parameters],
         "settings": {"checkLimits": names[CHECK_LIMITS], "warningDistance": names[WARNING_DISTANCE]},
+        "assembly": mechanism.assembly and names[mechanism.assembly.parameter],
         "limits": _limits(mechanism, names),
         "configuration": _configuration(kin),
         "defaultConfiguration": [1] * len(kin.branches) + [0] * len(kin.period_joints),

@@ -16,7 +16,7 @@ from derive.emit.page.jacobian import factored, jacobian_of, matrices_of
 from derive.emit.page.lines import Line, Lines, steps_by_name
 from derive.emit.page.names import Spelling, has_block, inputs_of, spelling_of
 from derive.emit.page.pictures import maps, pictured, singularities
-from derive.emit.page.steps import Stated, product_of, route_of, tree_of
+from derive.emit.page.steps import Stated, product_of, route_of, signs_of, tree_of
 from derive.emit.st.shared import method_name
 from derive.ir.passes import needed_for
 from derive.ir.program import Let, Program
@@ -81,7 +81,9 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
             has_block=has_block(kinematics),
             found=found,
             axes=list(tables.axes(kinematics)),
-            parameters=list(tables.parameters(kinematics, spelling)),
+            dimensions=list(tables.parameters(kinematics, spelling, is_own=True)),
+            settings=list(tables.parameters(kinematics, spelling, is_own=False)),
+            signs=list(signs_of(kinematics, lines)),
             numbers=list(tables.numbers(kinematics, spelling)),
             places=_places(spelling),
             chain=() if kinematics.mechanism.chain is None else product_of(kinematics.mechanism.chain.factors, lines),
@@ -92,12 +94,12 @@ def page_of(mechanism: Mechanism, kinematics: Kinematics, has_pictures: bool = T
             slots=2 ** len(kinematics.branches),
             programs=list(_programs(kinematics, lines)),
             matrices=matrices_of(derived, lines),
-            jacobian=body,
+            jacobian=ShownProgram("jacobian-program", "", tuple(body)),
             entries=entries,
             rows=kinematics.rows,
             factored=factored(kinematics.margins),
             margins=[(m, _margin(m, factors, lines), singular.get(m.name)) for m in kinematics.margins],
-            singularity=_program(kinematics.singularity, "singularity", "", lines),
+            singularity=_program(kinematics.singularity, "singularity-program", "", lines),
             workspace=[f"{bound}." for bound in workspace(kinematics)],
             maps=[] if found is None else list(maps(found)),
             measured=list(tables.measured(kinematics)),

@@ -15,6 +15,7 @@ from derive.geometry.frames import LETTERS, Factor, Motion
 from derive.ir.program import Let, Statement
 from derive.ir.symbols import names_in
 from derive.kinematics.branches.assignment import Assignment
+from derive.kinematics.kinematics import Kinematics
 from derive.report.derived import FORMS, Derived, ExplainedStep, Route
 
 
@@ -55,6 +56,7 @@ class ShownRoute:
 
     title: str
     equations: tuple[Stated, ...]
+    """Those that no step takes as they are: the others stand at their steps."""
     known: tuple[Line, ...]
     steps: tuple[ShownStep, ...]
     held: str
@@ -63,22 +65,32 @@ class ShownRoute:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A node of the tree of branches: a byte with its meaning, and the nodes below."""
+    """A node of the tree of branches: a byte, and the nodes below."""
 
     text: str
-    meaning: str
     below: tuple[Leaf, ...] = ()
 
 
+@dataclass(frozen=True)
+class Sign:
+    """A branch and its meaning: in words, or as the condition for its first name."""
+
+    name: str
+    names: tuple[str, str]
+    words: str
+    math: tuple[str, ...]
+
+
 _DEEPEST = 3
-"""Up to this number of branches are shown as a tree; of more, every byte is listed by itself."""
+"""Up to this number of branches are shown as a tree."""
 
 
 def route_of(route: Route, mechanism: Mechanism, lines: Lines) -> ShownRoute:
     """A solved problem on the page."""
+    used = {e.expression for step in route.steps for e in step.equations}
     return ShownRoute(
         title=route.title,
-        equations=tuple(_stated(e, lines) for e in route.equations),
+        equations=tuple(_stated(e, lines) for e in route.equations if e.expression not in used),
         known=tuple(lines.of(_needed(route))),
         steps=tuple(_step(step, mechanism, lines) for step in route.steps),
         held=", ".join(j.name for j in route.frozen),
@@ -140,15 +152,25 @@ def _axis(mechanism: Mechanism, unknown: sp.Symbol) -> str:
     return next((j.name for j in mechanism.joints if j.symbol == unknown), str(unknown))
 
 
+def signs_of(kinematics: Kinematics, lines: Lines) -> Iterator[Sign]:
+    """Every branch with its meaning: in words where the derivation named it, else the sign of its indicator."""
+    for branch in kinematics.mechanism.branches:
+        (first, second), (one, other) = branch.names, branch.meanings
+        words = f"In {first} {one}; in {second} {other}." if one else ""
+        if branch.is_crossing:
+            one, other = ("rises", "falls") if branch.signs[0] > 0 else ("falls", "rises")
+            words = f"In {first} the residual of the search {one} with the searched joint; in {second} it {other}."
+        condition = () if words else lines.math.lines(sp.Rel(branch.indicator, 0, ">" if branch.signs[0] > 0 else "<"))
+        yield Sign(branch.name, branch.names, words, condition)
+
+
 def tree_of(derived: Derived) -> tuple[Leaf, ...]:
-    """The tree of branches, in the order in which the steps choose; of many branches a list."""
+    """The tree of branches, in the order in which the steps choose; of many branches none."""
     assignments = [a for route in derived.inverse for a in route.assignments]
     order = list(dict.fromkeys(a.branch.name for a in assignments))
     known = {b.name: (k, b) for k, b in enumerate(derived.mechanism.branches)}
     names = [n for n in order if n in known] + [n for n in known if n not in order]
-    if len(names) <= _DEEPEST:
-        return tuple(_below(names, known))
-    return tuple(leaf for name in names for leaf in _below([name], known))
+    return tuple(_below(names, known)) if len(names) <= _DEEPEST else ()
 
 
 def _below(names: Sequence[str], known: Mapping[str, tuple[int, Branch]]) -> Iterator[Leaf]:
@@ -157,8 +179,7 @@ def _below(names: Sequence[str], known: Mapping[str, tuple[int, Branch]]) -> Ite
     place, branch = known[names[0]]
     for byte in (0, 1):
         text = f"byte {place} = {byte + 1}: {names[0]} {branch.names[byte]}"
-        meaning = branch.meanings[byte]
-        yield Leaf(text, meaning, tuple(_below(names[1:], known)))
+        yield Leaf(text, tuple(_below(names[1:], known)))
 
 
 def product_of(factors: Sequence[Factor], lines: Lines) -> tuple[str, ...]:

@@ -29,10 +29,14 @@ def axes(kinematics: Kinematics) -> Iterator[Cells]:
         yield joint.name, _MOTION[joint.kind], "deg" if joint.in_degrees else "u", joint.meaning
 
 
-def parameters(kinematics: Kinematics, spelling: Spelling) -> Iterator[Cells]:
-    """Name in equations, meaning, role, range, nominal value, unit, name in Python and as input of the block."""
+def parameters(kinematics: Kinematics, spelling: Spelling, *, is_own: bool) -> Iterator[Cells]:
+    """Name in equations, meaning, role, range, nominal value, unit, name in Python and as input of the block.
+
+    is_own: the dimensions of the machine; else the offsets, limits and settings that every machine has.
+    """
     keywords, inputs = python.inputs(kinematics).names, inputs_of(kinematics)
-    for given in kinematics.parameters:
+    dimensions = {p.name for p in kinematics.mechanism.parameters}
+    for given in (p for p in kinematics.parameters if (p.name in dimensions) == is_own):
         nominal = f"{given.nominal:g}"
         own = (spelling(given.name), given.meaning, given.role.value, _range(given), nominal, given.unit or "–")
         yield (*own, keywords[given.name], inputs[given.name] if has_block(kinematics) else "–")
