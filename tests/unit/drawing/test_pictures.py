@@ -103,7 +103,7 @@ def test_no_picture_without_a_block() -> None:
     """Every picture belongs to a block, and all of them together are small."""
     blocks = {m.block_name for m in CATALOGUE.values()}
     assert {p.name for p in PICTURES.iterdir()} == {f"{b}.{ending}" for b in blocks for ending in ("png", "svg")}
-    assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 2_500_000
+    assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 36_000 * len(blocks)
 
 
 @pytest.mark.long
