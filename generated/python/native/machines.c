@@ -41,7 +41,6 @@
 #include "p2x_type1.h"
 #include "p2x_type2.h"
 #include "p2y.h"
-#include "painter.h"
 #include "palletizer.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
@@ -134,8 +133,6 @@ softkin_regular p2x_type1_regular;
 softkin_regular_all p2x_type1_regular_all;
 softkin_regular p2x_type2_regular;
 softkin_regular p2y_regular;
-softkin_regular painter_regular;
-softkin_regular_all painter_regular_all;
 softkin_regular palletizer_regular;
 softkin_regular_all palletizer_regular_all;
 softkin_regular pcc_regular;
@@ -238,7 +235,6 @@ const softkin_native softkin_machines[] = {
     {"p2x_type1 4470745ab5555d52", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
     {"p2x_type2 cfb1e2e1acec7873", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y 30c921779399fe62", &p2y_mechanism, {p2y_regular, NULL}},
-    {"painter e48256c32bf68996", &painter_mechanism, {painter_regular, painter_regular_all}},
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},

@@ -72,7 +72,6 @@ if TYPE_CHECKING:
     from softkin.p2x_type1 import P2XType1
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
-    from softkin.painter import Painter
     from softkin.palletizer import Palletizer
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
@@ -161,7 +160,6 @@ __all__ = [
     "P2CType2",
     "P2XType1",
     "P2XType2",
-    "Painter",
     "Palletizer",
     "Parameter",
     "Planar3RRR",
@@ -248,7 +246,6 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
-    "Softkin_Painter": ("painter", "Painter"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
