@@ -94,6 +94,21 @@ def test_the_jacobian_is_that_of_the_equations(name: str) -> None:
         assert jacobian[:, k] == pytest.approx(told, rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
 
 
+@EVERY
+def test_on_an_inclined_base_the_platform_moves_as_without_it(name: str) -> None:
+    """Velocities and accelerations: turned with the base, or the same about the axes of the tool."""
+    robot, _, _ = both(name)
+    base = softkin.Frame.from_euler(35.0, 70.0, -15.0, (0.0, 0.0, 0.0))
+    frame = ((0.0, 0.0, 0.0), tuple(map(tuple, near_home(1, 0.4)[0].tolist())))
+    axes = robot.inverse(frame, None)
+    speeds = np.where([j.is_angle for j in SPHERICAL[name].joints], 1.0, 0.1) * (1.0 + np.arange(len(axes)))
+    turned = np.array(base.rotation) if SPHERICAL[name].task.turning is Turning.FULL else np.eye(2)
+    for call, given in (("twist", (speeds,)), ("twist_rate", (speeds, -2.0 * speeds))):
+        bare, mounted = (np.array(getattr(one, call)(axes, *given)) for one in (robot, robot.with_base(base)))
+        assert np.abs(bare).min() > 1e-6
+        assert mounted == pytest.approx(turned @ bare, rel=1e-9, abs=1e-9 * np.abs(bare).max())
+
+
 def test_an_equation_that_encloses_no_fixed_angle_is_refused() -> None:
     whole = SPHERICAL["camera on three curved arms"]
     other = (whole.closure[0] + ROTATION[2, 2] * A1.symbol, *whole.closure[1:])
