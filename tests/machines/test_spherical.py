@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
+from tests.harness.parse import parse
+from tests.harness.unused import unused
 from tests.machines.both import forward_in_both, in_both, inverse_in_both
+from tests.machines.made import built_of
 from tests.machines.spherical_machines import A1, SPHERICAL
 from tests.orthonormal import rodrigues
 from tests.text.controller import Controller
@@ -92,6 +95,13 @@ def test_the_jacobian_is_that_of_the_equations(name: str) -> None:
         spin = rate @ own.T if len(axes) == 3 else own.T @ rate
         told = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])[: len(jacobian)]
         assert jacobian[:, k] == pytest.approx(told, rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
+
+
+@EVERY
+def test_the_block_uses_what_it_declares(name: str) -> None:
+    built = built_of(validate(SPHERICAL[name]))
+    blocks = parse(built.parts["st"]["text"], f"{name}.st")
+    assert [one for block in blocks for one in unused(block)] == []
 
 
 @EVERY
