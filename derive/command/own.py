@@ -164,7 +164,8 @@ def _described(mechanism: Mechanism) -> str:
     """The machine in one line."""
     task = ", ".join(mechanism.task.position)
     turning = mechanism.task.turning.value
-    commanded = {"none": task, "about z": f"{task} and the turn about z", "direction": f"{task} and a direction"}
+    commanded = {"none": task, "about z": f"{task} and the turn about z"}
+    commanded |= {"direction": f"{task} and a direction" if task else "a direction"}
     commanded |= {word: f"{task}, {word}" for word in ("pitch", "pitch and roll")}
     text = commanded.get(turning, f"{task} and the whole rotation" if task else "the rotation")
     axes = " ".join(j.name for j in mechanism.joints) or "none"

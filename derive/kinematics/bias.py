@@ -40,8 +40,7 @@ def _bias_program(name: str, rows: Sequence[str], mechanism: Mechanism, jacobian
     body: tuple[Statement, ...]
     pose: dict[sp.Symbol, sp.Expr]
     if mechanism.is_platform:
-        body, pose, own = platform_velocities(mechanism, forward)
-        known = dict(zip(jacobian_rows(mechanism), own, strict=True))
+        body, pose, known = platform_velocities(mechanism, forward)
         values = [known.get(row, sp.Integer(0)) for row in rows]
     else:
         body, values = jacobian.body, _products([o.value for o in jacobian.outputs], speeds)

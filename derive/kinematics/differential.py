@@ -54,8 +54,7 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """The Jacobian: a row per quantity of the task, a column per axis; rotary axes per radian."""
     if mechanism.is_platform:
-        solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return normalise("jacobian", (*forward.statements, *solved), entries_of(twists, len(mechanism.joints)))
+        return _platform_program("jacobian", jacobian_rows(mechanism), mechanism, forward)
     statements, values = jacobian_entries(mechanism)
     return normalise("jacobian", (*forward.statements, *statements), entries_of(values, len(mechanism.joints)))
 
@@ -66,9 +65,9 @@ def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
     if mechanism.chain is not None:
         lets, values = chain_entries(mechanism, TWIST_ROWS)
         return normalise("twist", (*forward.statements, *lets), entries_of(values, width))
-    solved, values = (
-        platform_jacobian(mechanism, _motor_matrix(mechanism)) if mechanism.is_platform else jacobian_entries(mechanism)
-    )
+    if mechanism.is_platform:
+        return _platform_program("twist", TWIST_ROWS, mechanism, forward)
+    solved, values = jacobian_entries(mechanism)
     own = {row: values[k * width : (k + 1) * width] for k, row in enumerate(jacobian_rows(mechanism))}
     entries = [e for row in TWIST_ROWS for e in own.get(row, [sp.Integer(0)] * width)]
     return normalise("twist", (*forward.statements, *solved), entries_of(entries, width))
@@ -250,17 +249,20 @@ def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     )
 
 
-def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
-    """The Jacobian A^-1 (-B) at a pose that forward kinematics has found."""
-    statements, twists = _platform_twists(mechanism, motors)
-    return statements, _of_the_task(mechanism, twists, motors.cols)
+def _platform_program(name: str, rows: Sequence[str], mechanism: Mechanism, forward: Forward) -> Program:
+    """Rows of A^-1 (-B) at a pose that forward kinematics has found."""
+    motors = _motor_matrix(mechanism)
+    solved, twists = _platform_twists(mechanism, motors)
+    known = _by_rows(mechanism, twists, motors.cols)
+    entries = [e for row in rows for e in known.get(row, [sp.Integer(0)] * motors.cols)]
+    return normalise(name, (*forward.statements, *solved), entries_of(entries, motors.cols))
 
 
 def platform_velocities(
     mechanism: Mechanism, forward: Forward
-) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr], list[sp.Expr]]:
-    """The statements for the velocity of a platform from the speeds of its axes, the rates of its pose, and those of
-    the task. The rows of A are made of the pose that was found, so that they can be differentiated.
+) -> tuple[tuple[Statement, ...], dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
+    """The statements for the velocity of a platform from the speeds of its axes, the rates of its pose, and the rows of
+    its twist. The rows of A are made of the pose that was found, so that they can be differentiated.
     """
     lines = legs_at_pose(mechanism)
     bound = {let.name for let in lines}
@@ -281,7 +283,7 @@ def platform_velocities(
     for rod in mechanism.rods:  # its length is what its joint says: it is never too short at a pose that was found
         (changed,) = sp.Matrix([with_fixed_names(mechanism, rod.length)]).jacobian(joints) * speeds
         moving |= {leg_symbol("divisor", rod): changed} if changed != 0 else {}
-    return (*found, *lines, *solved), moving, _of_the_task(mechanism, twists, 1)
+    return (*found, *lines, *solved), moving, {row: e for row, (e,) in _by_rows(mechanism, twists, 1).items()}
 
 
 def _platform_twists(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
@@ -300,17 +302,15 @@ def _platform_twists(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Sta
     return (held, *fixed_lets(mechanism), *lets, system), values
 
 
-def _of_the_task(mechanism: Mechanism, twists: list[sp.Expr], width: int) -> list[sp.Expr]:
-    """The rows of the task, made from those of the platform: commanded coordinates, and tilts about the tool's axes."""
-    if not mechanism.passive:
-        return twists
-    position = mechanism.motion.position
-    matrix = sp.Matrix(len(twists) // width, width, twists)
-    spin = matrix[len(position) :, :]
-    if mechanism.task.turning is Turning.DIRECTION:
-        spin = (rotation_of(mechanism).T * spin)[:2, :]
-    kept = [position.index(c) for c in mechanism.task.position]
-    return list(sp.Matrix.vstack(matrix.extract(kept, list(range(width))), spin))
+def _by_rows(mechanism: Mechanism, twists: Sequence[sp.Expr], width: int) -> dict[str, list[sp.Expr]]:
+    """The twists of the platform by the names of their rows, also about the axes of the tool, where it turns freely."""
+    matrix = sp.Matrix(len(twists) // width, width, list(twists))
+    names = [*mechanism.motion.position, *(f"turn {c}" for c in rotation_axes(mechanism))]
+    found = {name: list(matrix.row(k)) for k, name in enumerate(names)}
+    if mechanism.motion.turning is Turning.FULL:
+        tilts = rotation_of(mechanism).T * matrix[len(mechanism.motion.position) :, :]
+        found |= {name: list(tilts.row(k)) for k, name in enumerate(("tilt x", "tilt y"))}
+    return found
 
 
 def _driven(mechanism: Mechanism, leg: Leg) -> sp.Matrix:

@@ -34,6 +34,21 @@ print(my_scara.__file__)
 """
 
 
+CARDAN = """
+from sympy import Matrix
+from derive.mechanism import ROTATION, Mechanism, Task, Turning, guide, length, linear, rod
+
+SIZE = length("size", "Centre to the end of a pushrod", nominal=100.0)
+S1, S2 = (linear(f"S{k}", f"Length of pushrod {k}", nominal=200.0) for k in (1, 2))
+ENDS = [tuple(ROTATION * Matrix(end)) for end in ((SIZE, 0, 0), (0, SIZE, 0))]
+MECHANISM = Mechanism(
+    name="Mirror", joints=(S1, S2), parameters=(SIZE,), task=Task("", Turning.DIRECTION), home=(0, 0, 0),
+    rods=(rod("1", (SIZE, 0, -200), ENDS[0], S1), rod("2", (0, SIZE, -200), ENDS[1], S2)),
+    guides=(guide("cardan", (0, 1, 0), ENDS[0]),), positive=(S1, S2),
+)
+"""
+
+
 @pytest.fixture
 def scara(folder: Folder) -> Folder:
     """A folder in which a SCARA has been derived."""
@@ -242,6 +257,12 @@ def test_generate_keeps_going_where_it_is_asked_to(folder: Folder) -> None:
     assert said.status == 1 and said.err.count("error: ") == 2
     assert re.search(r"c_wrong\.py:9: the closure does not determine a1, a2: ", said.err)
     assert "st/own/Rail.st" in folder.names("out")
+
+
+def test_what_only_turns_commands_a_direction_alone(folder: Folder) -> None:
+    folder.write("mirror.py", CARDAN)
+    said = folder.run("check", "mirror.py")
+    assert said.status == 0 and "Mirror: axes S1 S2; commanded: a direction\n" in said.out
 
 
 def test_the_makefile_says_the_same() -> None:

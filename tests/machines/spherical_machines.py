@@ -27,6 +27,16 @@ def _pushrod(number: int, joint: Joint) -> Rod:
 ACROSS = (sp.Matrix([0, -sin(A1), cos(A1)]), sp.Matrix([cos(A2), 0, -sin(A2)]), sp.Matrix([-sin(A3), cos(A3), 0]))
 CARRIED = (sp.Matrix([0, 1, 0]), sp.Matrix([0, 0, 1]), sp.Matrix([1, 0, 0]))
 
+CRANK = length("crank", "length of a crank", nominal=50.0)
+RODS = tuple(length(f"rod_{k}", f"length of rod {k}", nominal=size) for k, size in ((1, 200.0), (2, 130.0)))
+
+
+def _crank(number: int, joint: Joint, low: float, aside: int) -> Rod:
+    """A crank about Y, zero backwards and positive upwards, and its rod: one motor stands above the other."""
+    knee = -10 - CRANK * cos(joint), aside * 45, CRANK * sin(joint) - low
+    return rod(str(number), knee, _on_ball(-60, aside * 45), RODS[number - 1])
+
+
 SPHERICAL: Mapping[str, Mechanism] = {
     "ball on three pushrods": Mechanism(
         name="Kin_BallOnPushrods",
@@ -55,6 +65,15 @@ SPHERICAL: Mapping[str, Mechanism] = {
         guides=(guide("cardan", (1, 0, 0), _on_ball(0, METRES)),),
         task=Task("", Turning.DIRECTION),
         positive=(S1, S2),
+        home=(0, 0, 0),
+    ),
+    "ankle on a cardan joint with two cranks": Mechanism(
+        name="Kin_Ankle",
+        joints=(A1, A2),
+        parameters=(CRANK, *RODS),
+        rods=(_crank(1, A1, 200, 1), _crank(2, A2, 130, -1)),
+        guides=(guide("cardan", (0, 1, 0), _on_ball(CRANK, 0)),),
+        task=Task("", Turning.DIRECTION),
         home=(0, 0, 0),
     ),
 }

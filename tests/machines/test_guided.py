@@ -15,6 +15,8 @@ from derive.description.validate import validate
 from derive.ir.interpret import evaluate
 from derive.ir.symbols import ROTATION_ENTRIES
 from derive.pipeline import Built
+from tests.catalogue.mounted.machines import BASE
+from tests.catalogue.mounted.test_velocities import matrix_of, rows_of
 from tests.catalogue.refusals import refusal
 from tests.machines.both import forward_in_both, in_both, inverse_in_both
 from tests.machines.guided import GUIDED
@@ -230,6 +232,16 @@ def _slope(one: Guided, axes: Array, column: int, here: softkin.Frame) -> Array:
     if one.mechanism.task.turning is Turning.DIRECTION:
         return np.array([*rows, *(middle.T @ turn)[:2]])
     return np.array([*rows, turn[2]])
+
+
+@EVERY
+def test_on_an_inclined_base_every_row_is_the_slope(name: str) -> None:
+    """There the commanded coordinates move with those that are not."""
+    one = guided(name)
+    robot = one.robot.with_base(BASE)
+    axes = np.array(one.robot.inverse(commands(one, 1)[0], None))
+    expected = rows_of(robot, axes, one.size)
+    assert_allclose(matrix_of(robot, axes), expected, rtol=0.0, atol=1e-6 * np.abs(expected).max())
 
 
 @EVERY

@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
+from tests.harness.parse import parse
+from tests.harness.unused import unused
 from tests.machines.both import forward_in_both, in_both, inverse_in_both
+from tests.machines.made import built_of
 from tests.machines.spherical_machines import A1, SPHERICAL
 from tests.orthonormal import rodrigues
 from tests.text.controller import Controller
@@ -92,6 +95,28 @@ def test_the_jacobian_is_that_of_the_equations(name: str) -> None:
         spin = rate @ own.T if len(axes) == 3 else own.T @ rate
         told = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])[: len(jacobian)]
         assert jacobian[:, k] == pytest.approx(told, rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
+
+
+@EVERY
+def test_the_block_uses_what_it_declares(name: str) -> None:
+    built = built_of(validate(SPHERICAL[name]))
+    blocks = parse(built.parts["st"]["text"], f"{name}.st")
+    assert [one for block in blocks for one in unused(block)] == []
+
+
+@EVERY
+def test_on_an_inclined_base_the_platform_moves_as_without_it(name: str) -> None:
+    """Velocities and accelerations: turned with the base, or the same about the axes of the tool."""
+    robot, _, _ = both(name)
+    base = softkin.Frame.from_euler(35.0, 70.0, -15.0, (0.0, 0.0, 0.0))
+    frame = ((0.0, 0.0, 0.0), tuple(map(tuple, near_home(1, 0.4)[0].tolist())))
+    axes = robot.inverse(frame, None)
+    speeds = np.where([j.is_angle for j in SPHERICAL[name].joints], 1.0, 0.1) * (1.0 + np.arange(len(axes)))
+    turned = np.array(base.rotation) if SPHERICAL[name].task.turning is Turning.FULL else np.eye(2)
+    for call, given in (("twist", (speeds,)), ("twist_rate", (speeds, -2.0 * speeds))):
+        bare, mounted = (np.array(getattr(one, call)(axes, *given)) for one in (robot, robot.with_base(base)))
+        assert np.abs(bare).min() > 1e-6
+        assert mounted == pytest.approx(turned @ bare, rel=1e-9, abs=1e-9 * np.abs(bare).max())
 
 
 def test_an_equation_that_encloses_no_fixed_angle_is_refused() -> None:

@@ -17,8 +17,9 @@ from derive.emit.st.shared import OUTCOME, call_lines
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
-from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
-from derive.ir.tree import If, Item, bound_in
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, reason_expressions
+from derive.ir.symbols import names_in
+from derive.ir.tree import If, Item, bound_in, read_in, statements_in
 from derive.ir.types import type_of
 from derive.lowering.passes import structured
 from derive.lowering.scheduling import decided
@@ -56,7 +57,8 @@ def printed(
     """
     items = structured(program)
     stored = {**stored, **kept(program.body)}
-    own = {name.name: name for name in bound_in(items) if name.name not in stored}
+    unread = _unread(program, items)
+    own = {name.name: name for name in bound_in(items) if name.name not in stored and name not in unread}
     temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((SIDE,) if is_branch else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     side = (f"{SIDE} : INT;",) if is_branch and has_sides(program) else ()
@@ -70,6 +72,13 @@ def printed(
         body="\n".join(body),
         outputs={o.name: printer.print(o.value) for o in decided(program).outputs},
     )
+
+
+def _unread(program: Program, items: Sequence[Item]) -> set[sp.Symbol]:
+    """The unknowns of systems that nothing reads: they stay in their array."""
+    statements = list(statements_in(items))
+    told = [*(o.value for o in decided(program).outputs), *(e for s in statements for e in reason_expressions(s))]
+    return {n for s in statements if isinstance(s, Solve) for n in s.names} - read_in(items).union(*map(names_in, told))
 
 
 def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
@@ -233,7 +242,7 @@ def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
     given = f"{arrays}, iSize := {system.size}, iColumns := {system.columns}"
     yield from wrapped(f"{target}{solver.function}({given});")
     for name, element in elements(system).items():
-        if printer.names[name] != element:
+        if printer.names.get(name, element) != element:
             yield f"{printer.names[name]} := {element};"
 
 
