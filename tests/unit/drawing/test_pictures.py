@@ -30,8 +30,6 @@ ST = OUTPUT / "st"
 PICTURES = ST / "pictures"
 _TEXT = "{http://www.w3.org/2000/svg}text"
 _INPUT = re.compile(r"\{attribute 'sm_kin_param_unit' := 'u'\}\n  (d\w+) : LREAL")
-UNDRAWN_CHOICES = ()
-"""Mechanisms with branches of which no two ways look different at the drawn dimensions."""
 _SETTINGS = ("dOffset", "dLower", "dUpper")
 """Inputs of axes and limits, which are no lengths of the machine."""
 
@@ -65,7 +63,7 @@ def test_the_description_refers_to_the_shipped_pictures(mechanism: Mechanism) ->
     found = re.findall(r"^\.\. image:: @\((.+)\)\n   :width: 400$", _block(mechanism), re.MULTILINE)
     names = (f"{mechanism.block_name}{end}.png" for end in ("", "_Configuration"))
     assert found == [name for name in names if (PICTURES / name).exists()]
-    assert (len(found) == 2) or not mechanism.branches or mechanism.name in UNDRAWN_CHOICES
+    assert len(found) == 2 or not mechanism.branches
     for name in found:
         with Image.open(PICTURES / name) as image:
             assert image.format == "PNG"
