@@ -121,7 +121,7 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
             rises = f"whether the residual rises ({first}) or falls ({second}) with {joint} at the root"
             sign = f"whether the determinant of the Jacobian is positive ({first}) or negative ({second})"
             yield f"       {sign if mechanism.search.is_eliminated else rises};"
-            yield f"       of the roots of one branch the answer is the one whose {joint} is nearest to the reference"
+            yield f"       of the roots of one branch the answer is next to the reference, or has the nearest {joint}"
             continue
         indicator = in_words(mechanism, branch.indicator)
         yield f'  branch("{branch.name}", {indicator}, {signs})'

@@ -85,6 +85,8 @@ class Joint(Quantity):
     nominal: float = 0.0
     loops: tuple[Loop, ...] = ()
     """The loops between the motor and the joint, that of the motor first: the joint value then follows from these."""
+    free: bool = False
+    """Whether no motor moves the joint, and any value of it is as good: it has no axis, and is zero at given axes."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coupling", sp.sympify(self.coupling))

@@ -14,7 +14,7 @@ from derive.ir.passes import normalise
 from derive.ir.program import Output, Program, reason_expressions
 from derive.ir.symbols import branch_sign, symbols_of
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.search.find import FIND_ROOT
+from derive.kinematics.search.loop.find import FIND_ROOT
 
 Shape = str | tuple["Shape", ...]
 Arrays = tuple[tuple[str, tuple[Shape, ...]], ...]

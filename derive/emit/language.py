@@ -16,7 +16,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from derive.ir import constants
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.search.find import AHEAD, ELSEWHERE
+from derive.kinematics.search.loop.find import AHEAD, ELSEWHERE
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 TEMPLATES, RUNTIME = (

@@ -18,6 +18,7 @@ from derive.ir.reason import Why, about_input
 from derive.ir.symbols import compared, cosine, flag, real, sine
 
 _REASONABLE = "numbers of reasonable size"
+_ZERO = sp.Integer(0)
 _CHECK = "inputs must be numbers, and of reasonable size"
 
 
@@ -38,7 +39,7 @@ def joint_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
     """Joint values from axis values, in radians and lengths; refused where a loop that moves a joint does not close."""
     lets: list[Statement] = []
     for joint in mechanism.joints:
-        motor = (joint.axis - joint.offset) * joint.unit
+        motor = _ZERO if joint.free else (joint.axis - joint.offset) * joint.unit
         if joint.loops:
             lets += [Let(joint.motor, motor), *joint_of_motor(mechanism, joint)]
             continue
@@ -67,7 +68,7 @@ def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     table = {j.motor: _reference_motor(j) for j in mechanism.joints}
     lets: list[Let] = []
     for joint in mechanism.joints:
-        motor = (joint.reference - joint.offset) * joint.unit
+        motor = _ZERO if joint.free else (joint.reference - joint.offset) * joint.unit
         if joint.loops:
             names = {joint.motor: _reference_motor(joint), joint.symbol: reference_value(joint)}
             lets += [Let(_reference_motor(joint), motor), *renamed(joint_of_motor(mechanism, joint), names)]

@@ -161,6 +161,8 @@ class Call(Common):
     passes: int | None = None
     """In a loop: the most passes that all runs together make of a loop of the shared program, or of one that this
     calls; None: every run may make as many as there may be in one run."""
+    is_usual: bool = False
+    """Whether usual poses run it, too, if it is run under a condition."""
 
     @property
     def is_conditional(self) -> bool:
@@ -170,7 +172,7 @@ class Call(Common):
     @property
     def is_rare(self) -> bool:
         """Whether few poses run the program: a call with a refusal of its own is a check that every pose passes."""
-        return self.is_conditional and self.refusal is None
+        return self.is_conditional and self.refusal is None and not self.is_usual
 
     @property
     def arguments(self) -> tuple[sp.Expr, ...]:

@@ -46,7 +46,7 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     """
     if mechanism.is_platform:
         return forward_from_start(mechanism)
-    checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
+    checks = (*finite([j.axis for j in mechanism.joints if not j.free]), *joint_lets(mechanism), *_positive(mechanism))
     if mechanism.chain is not None and is_spatial(mechanism.chain):
         return _frame_by_frame(mechanism, checks)
     if mechanism.chain is not None:

@@ -23,7 +23,7 @@ from derive.mechanism import (
 from tests.machines.angle_machines import NUMBERS
 from tests.machines.chain_machines import CHAINS
 from tests.machines.held_machines import FIRST_HELD, HELD
-from tests.machines.searched_machines import POINTS, SEARCHED
+from tests.machines.searched_machines import POINTING, POINTS, SEARCHED
 from tests.machines.subset_machines import SWEPT
 from tests.machines.task_machines import TASK_MACHINES, UNNAMED
 from tests.machines.textbook import textbook
@@ -247,6 +247,7 @@ MACHINES: Mapping[str, Mechanism] = {
 }  # fmt: skip
 SOLUTIONS: Mapping[str, int] = {
     **{name: 2 ** len(m.branches) for name, m in MACHINES.items()},
+    **dict.fromkeys(POINTING, 8),
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),
     **{name: count for count, names in UNNAMED.items() for name in names},
 }
@@ -254,6 +255,7 @@ SOLUTIONS: Mapping[str, int] = {
 starts finds them.
 """
 COSTLY = (
+    "a tool beside", "a tool inclined",
     "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",
     "arm with three parallel axes", "across its last axis", "by a table with angles", "by a table, the last held",
     "head points, beside its axis", "may lie on its second axis", "seven axes beside each other",

@@ -54,6 +54,27 @@ POINTS = {
 }
 """Arms that turn a point: with a shift of zero a branch may meet the next one where two solutions of it meet."""
 
+_FLANGE = Tz(-FLANGE)
+
+
+def _pointing(name: str, chain: Chain) -> Mechanism:
+    """An arm with five axes whose direction is commanded, with the line of the tool beside the last axis."""
+    shoulder = Rz(A1) * Tx(_B1) * Ry(A2) * Tz(UPPER) * Ry(A3) * Tx(FORE)
+    stock = (A1, A2, A3, A4, A5, *_BESIDE, UPPER, FORE, FLANGE, LEAN)
+    return textbook(stock, name, shoulder * chain * _FLANGE, Task("xyz", Turning.DIRECTION))
+
+
+POINTING = {
+    "five axes with a tool beside the last one, three of them parallel": _pointing(
+        "PointingParallel", Ry(A4) * Tx(_B2) * Rx(A5) * Ty(_B3)
+    ),
+    "five axes with a tool beside the last one": _pointing("Pointing", Rx(A4) * Ry(A5) * Tx(_B2)),
+    "five axes with a tool inclined to the last one": _pointing(
+        "PointingInclined", Rx(A4) * Ty(_B3) * Rz(A5) * Tx(_B2) * Ry(radians(LEAN))
+    ),
+}
+"""With the turn of the tool about its line as a sixth joint these are arms that are searched."""
+
 _BENT = Rz(radians(LEAN)) * Rx(A5) * Tx(M_ELBOW) * Rz(-radians(LEAN))
 SEARCHED = {
     "arm whose wrist goes sideways": _arm(
@@ -72,5 +93,8 @@ SEARCHED = {
         ),
     ),
     **POINTS,
+    **POINTING,
 }
-"""One without any branch stated, one with a branch that no step of the trial decides; and arms that turn a point."""
+"""One without any branch stated, one with a branch that no step of the trial decides; arms that turn a point, or point
+a tool.
+"""

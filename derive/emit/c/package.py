@@ -27,9 +27,9 @@ from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kept import kept_by_identity
 from derive.kinematics.kinematics import Kinematics
-from derive.kinematics.search.find import ONWARD
+from derive.kinematics.search.loop.find import ONWARD
+from derive.kinematics.search.loop.twins import TWIN
 from derive.kinematics.search.programs import START
-from derive.kinematics.search.twins import TWIN
 from derive.report.reasons import NO_MEANING, reasons_of, reasons_of_rotation
 
 name, title = "c", "C"

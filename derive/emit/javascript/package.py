@@ -22,7 +22,7 @@ from derive.emit.javascript.program import function_lines, refusals_of, setup_li
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
-from derive.kinematics.search.find import ONWARD
+from derive.kinematics.search.loop.find import ONWARD
 from derive.kinematics.search.programs import START
 from derive.report.reasons import reasons_of, reasons_of_rotation
 

@@ -9,7 +9,7 @@ from derive.emit.python.layout import note_lines, taken_apart, tuple_of
 from derive.emit.python.printer import ScalarPrinter, spelled
 from derive.ir.program import Call, Program
 from derive.ir.symbols import is_condition
-from derive.kinematics.search.find import ONWARD
+from derive.kinematics.search.loop.find import ONWARD
 from derive.kinematics.search.programs import START
 
 FOUND = "found"

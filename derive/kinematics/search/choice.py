@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
 import sympy as sp
 
 from derive.description.mechanism import Branch, Joint, Mechanism, Search, Turning, crossing
@@ -27,6 +28,8 @@ from derive.kinematics.refusals.neighbours import fitting_task, what_misses
 from derive.kinematics.search.derivations import Searched, solve_both
 from derive.kinematics.search.elimination.order import elimination_of
 from derive.kinematics.search.guards import guards_of
+from derive.kinematics.search.loop.near import NEAR
+from derive.kinematics.search.tool_turn import TOOL_TURN, with_tool_turn
 from derive.kinematics.search.wave import wave_program
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
@@ -63,14 +66,15 @@ def with_search(mechanism: Mechanism) -> Mechanism:
     except Undetermined:
         raise
     except Unsolved as problem:
-        found = _best(mechanism) if _may_be_searched(mechanism) else None
-        if found is None and (by_elimination := _eliminated(mechanism)) is not None:
+        arm = with_tool_turn(mechanism)
+        found = _best(arm) if _may_be_searched(arm) else None
+        if found is None and (by_elimination := _eliminated(arm)) is not None:
             return by_elimination
         if found is None:
             refusal = type(problem)(with_advice(str(problem), _advice(mechanism)))
             refusal.steps = problem.steps
             raise refusal from None
-        return _searched(mechanism, found)
+        return _searched(arm, found)
     return mechanism
 
 
@@ -83,7 +87,7 @@ def solve_searched(stated: Mechanism, mechanism: Mechanism) -> Searched:
     try:
         wave_program(both)
     except Unsolved:
-        other = _eliminated(stated) if stated.search is None else None
+        other = _eliminated(with_tool_turn(stated)) if stated.search is None else None
         if other is None:
             raise
         both = solve_both(other)
@@ -102,8 +106,8 @@ def _eliminated(mechanism: Mechanism) -> Mechanism | None:
     note = (
         f"No closed form is known. With {joint} known the other joints follow from linear equations, whose determinant "
         f"vanishes where the arm closes. The inverse looks for these values of {joint}, all around the circle; there "
-        f"are at most {most} solutions. The byte {last.name} is the sign of the determinant of the Jacobian; of the "
-        f"solutions of one branch the answer is the one whose {joint} is nearest to the reference."
+        f"are at most {most} solutions. The byte {last.name} is the sign of the determinant of the Jacobian. "
+        f"{_of_one_branch(joint)}"
     )
     return replace(chosen, notes=(*mechanism.notes, note))
 
@@ -138,13 +142,20 @@ def _may_be_searched(mechanism: Mechanism) -> bool:
 def _candidates(mechanism: Mechanism) -> Iterator[_Candidate]:
     for joint in mechanism.solved_joints:
         try:
-            if not joint.is_angle or not _may_be_solved(mechanism, joint):
+            if not joint.is_angle or joint.free or not _may_be_solved(mechanism, joint):
                 continue
             trial = solve_at(mechanism, joint)
         except (Unsolved, TooMuchWork):
             continue
-        if len(trial.derivation.residuals) == 1 and guards_of(trial.derivation) is not None:
+        if len(trial.derivation.residuals) == 1 and guards_of(trial.derivation) is not None and not _turns_tool(trial):
             yield _Candidate(joint, trial)
+
+
+def _turns_tool(trial: Inverse) -> bool:
+    """Whether a branch of a trial depends on the turn of the tool, which no axis tells."""
+    turn = TOOL_TURN.symbol
+    names = {turn, cosine(turn), sine(turn)}
+    return any(names & names_in(d.value) for d in trial.derivation.determinants)
 
 
 def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
@@ -178,6 +189,14 @@ def _note(mechanism: Mechanism, found: _Candidate) -> str:
         f"inverse looks for its roots along {joint}, all around the circle."
     )
     return (
-        f"{first} The byte {last.name} tells whether the residual rises or falls with {joint} at the root; of the "
-        f"roots of one branch the answer is the one whose {joint} is nearest to the reference."
+        f"{first} The byte {last.name} tells whether the residual rises or falls with {joint} at the root. "
+        f"{_of_one_branch(joint)}"
+    )
+
+
+def _of_one_branch(joint: str) -> str:
+    """Which solution of a branch is the answer, for users."""
+    return (
+        "Of the solutions of one branch the answer is the one next to the reference, if all axes together are less "
+        f"than {np.degrees(float(NEAR)):.1f} degrees away; else the one whose {joint} is nearest to the reference."
     )

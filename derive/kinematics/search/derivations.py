@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import sympy as sp
 
@@ -28,6 +29,7 @@ from derive.kinematics.search.elimination.order import elimination_of
 from derive.kinematics.search.guards import conditions_of, guards_of, least, room_of
 from derive.kinematics.search.programs import Trial, trial_of, with_goal
 from derive.kinematics.search.slopes import slope_name, with_slopes
+from derive.kinematics.search.tool_turn import without_tool_turn
 from derive.work import stage
 
 SEARCHED = flag("searched")
@@ -41,7 +43,8 @@ furthest from its folds, and turns by a sixth up to c = 0.85.
 class Searched:
     """Both derivations of a mechanism with a root search, and the branches of their steps."""
 
-    mechanism: Mechanism
+    arm: Mechanism
+    """The mechanism, with the turn of its tool as a joint where that is not commanded."""
     forward: Forward
     closed: Inverse | None
     """None where no parameter leads to a closed form."""
@@ -52,6 +55,11 @@ class Searched:
     """The branches that no step of a trial decides."""
     eliminated: Equations | None = None
     """How the other joints follow from the searched one, where no steps solve them; `trial` has none then."""
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism as it is described."""
+        return without_tool_turn(self.arm)
 
 
 @stage("the root search")
@@ -106,7 +114,7 @@ def without_search(mechanism: Mechanism) -> Mechanism:
 
 def searched_flag(both: Searched) -> tuple[Let, ...]:
     """The flag that the parameter is not zero; none where there is no closed form."""
-    search = both.mechanism.search
+    search = both.arm.search
     if search is None or search.where is None:
         return ()
     return (Let(SEARCHED, sp.Gt(sp.Abs(search.where.symbol), 0), f"whether to search along {search.joint.name}"),)
@@ -140,7 +148,7 @@ def trial_of_all_signs(both: Searched) -> Trial:
 
 def _statements(both: Searched) -> tuple[list[Let], tuple[Statement, ...]]:
     """What a trial knows, and the statements that solve it."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))

@@ -29,9 +29,11 @@ from derive.kinematics.search.derivations import (
     wanted,
 )
 from derive.kinematics.search.elimination.vanishing import eliminated_trial
-from derive.kinematics.search.find import ONWARD, Steps, search_program
+from derive.kinematics.search.loop.find import ONWARD, Steps, search_program
+from derive.kinematics.search.loop.near import IS_NEAR, near_name, near_program
+from derive.kinematics.search.loop.parts import look_program
+from derive.kinematics.search.loop.tried import try_program
 from derive.kinematics.search.margins import DETERMINANT, margins_wanted
-from derive.kinematics.search.parts import look_program
 from derive.kinematics.search.programs import (
     FOUND,
     GOAL,
@@ -41,39 +43,60 @@ from derive.kinematics.search.programs import (
     joints_program,
     step_program,
 )
-from derive.kinematics.search.tried import try_program
 from derive.kinematics.search.wave import wave_program
 
 
 def branch_statements(both: Searched) -> tuple[Statement, ...]:
     """The inverse of one branch, up to the axis values of every joint."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     program = search_of(both)
-    names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
-    call = Call(program, _arguments(both, program), names, f"root search along {mechanism.search.joint.name}")
-    no_root = about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)
-    if both.closed is None:
-        return (_wave(both), call, Require(FOUND, Status.UNREACHABLE, reason=no_root), *_chosen(both))
+    names = (FOUND, *(real(f"found_{j.symbol.name}") for j in both.mechanism.joints))
+    is_asked = sp.true if both.closed is None else SEARCHED
+    is_searched = sp.And(is_asked, sp.Not(IS_NEAR))
+    note = f"root search along {mechanism.search.joint.name}"
+    found = sp.Or(IS_NEAR, FOUND) if both.closed is None else sp.Or(sp.Not(SEARCHED), IS_NEAR, FOUND)
     return (
-        *searched_flag(both),
-        *_closed(both, both.closed),
-        _wave(both),
-        call,
-        Require(sp.Or(sp.Not(SEARCHED), FOUND), Status.UNREACHABLE, reason=no_root),
+        *(() if both.closed is None else (*searched_flag(both), *_closed(both, both.closed))),
+        _near(both, is_asked),
+        _wave(both, is_searched),
+        Call(program, _arguments(both, program), names, note, is_searched, is_usual=True),
+        Require(found, Status.UNREACHABLE, reason=about_joint(mechanism.search.joint.symbol, Why.NO_ROOT)),
         *_chosen(both),
     )
 
 
-def _wave(both: Searched) -> Call:
+def _near(both: Searched, is_asked: sp.Basic) -> Call:
+    """The solution next to the reference."""
+    step, fits = _steps(both)
+    program = near_program(both.arm, step, fits, _given(both))
+    names = (IS_NEAR, *(near_name(j) for j in both.mechanism.solved_joints))
+    return Call(
+        program, _arguments(both, program), names, "the solution next to the reference", is_asked, is_usual=True
+    )
+
+
+def _wave(both: Searched, is_asked: sp.Basic = sp.true) -> Call:
     """The wave, which is the same for all branches."""
     program, _ = wave_program(both)
-    return Call(program, _arguments(both, program), tuple(real(o.name) for o in program.outputs))
+    return Call(
+        program, _arguments(both, program), tuple(real(o.name) for o in program.outputs), "", is_asked, is_usual=True
+    )
+
+
+def _steps(both: Searched) -> tuple[Program, Program]:
+    """A step on the closure, and whether joints are on a branch."""
+    return step_program(both.arm), fits_program(both.arm, margins_wanted(both), DETERMINANT)
+
+
+def _given(both: Searched) -> tuple[sp.Symbol, ...]:
+    """What does not change in a search, besides the wave."""
+    return (*GOAL.values(), *map(wanted, both.arm.branches), *map(reference_value, both.arm.joints))
 
 
 def _closed(both: Searched, closed: Inverse) -> tuple[Statement, ...]:
     """The closed form, which has the first crossing alone."""
-    crossing = next(b for b in both.mechanism.branches if b.is_crossing)
+    crossing = next(b for b in both.arm.branches if b.is_crossing)
     solved = with_branch_signs(closed.derivation.statements, both.closed_branches)
     is_first = sp.Or(SEARCHED, sp.Gt(sigma(crossing), 0))
     only = Require(is_first, Status.UNREACHABLE, reason=about_machine(Why.FIRST_CROSSING_ONLY))
@@ -82,7 +105,7 @@ def _closed(both: Searched, closed: Inverse) -> tuple[Statement, ...]:
 
 def _arguments(both: Searched, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
     """What the search of a branch is given."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
     given |= {START: Wrap(reference_value(mechanism.search.joint)), LOOKED_FOR: SEARCHED, ONWARD: sp.false}
@@ -102,7 +125,7 @@ def search_given(both: Searched) -> Program:
 
 def search_of(both: Searched) -> Program:
     """The program that finds the root of a branch, with the programs that it calls."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     wave, degree = wave_program(both)
     if both.eliminated is not None:
@@ -110,26 +133,21 @@ def search_of(both: Searched) -> Program:
     else:
         trial = trial_on_branch(both)
         tries, joints = try_program(trial), joints_program(mechanism, trial)
-    steps = Steps(
-        look=look_program(degree),
-        trial=tries,
-        joints_at=joints,
-        step=step_program(mechanism),
-        fits=fits_program(mechanism, margins_wanted(both), DETERMINANT),
-    )
-    given = (*GOAL.values(), *map(wanted, mechanism.branches), *map(reference_value, mechanism.joints))
-    return search_program(mechanism, steps, (*given, *(real(o.name) for o in wave.outputs)))
+    step, fits = _steps(both)
+    steps = Steps(look_program(degree), tries, joints, step, fits)
+    return search_program(mechanism, steps, (*_given(both), *(real(o.name) for o in wave.outputs)))
 
 
 def _chosen(both: Searched) -> Iterable[Let]:
     """The angle of every joint, from the search or in closed form."""
     for joint in both.mechanism.solved_joints:
         name = joint.symbol.name
+        found = Select(IS_NEAR, near_name(joint), real(f"found_{name}"))
         if both.closed is None:
-            yield Let(joint.symbol, real(f"found_{name}"))
+            yield Let(joint.symbol, found)
             continue
         closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
-        yield Let(joint.symbol, Select(SEARCHED, real(f"found_{name}"), closed))
+        yield Let(joint.symbol, Select(SEARCHED, found, closed))
 
 
 def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Statement, ...]:

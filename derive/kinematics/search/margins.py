@@ -39,7 +39,7 @@ _SAMPLES = 64
 @stage("the distance from singular poses")
 def margin_statements(both: Searched) -> tuple[tuple[Statement, ...], tuple[Let, ...]]:
     """The statements at given axis values, and `branch_<name>` of every branch."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     statements: list[Statement] = [*searched_flag(both), *both.forward.statements]
     own = {name for s in both.forward.statements for name in s.bound()}
     margins: dict[str, dict[str, sp.Expr]] = {}
@@ -79,13 +79,13 @@ def _on_either(both: Searched, tried: sp.Expr, closed: sp.Expr | None) -> sp.Exp
 def _indicators(both: Searched) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
     """The statements for, and the indicators of, the branches that no step decides."""
     lets, indicators = named_trigonometry(
-        both.mechanism, [with_fixed_names(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
+        both.arm, [with_fixed_names(both.arm, b.indicator * b.signs[0]) for b in both.asked]
     )
     return tuple(lets), tuple(indicators)
 
 
 def _crossing_margin(both: Searched, determinant: sp.Expr, margins: dict[str, dict[str, sp.Expr]]) -> Let:
-    crossing = next(b for b in both.mechanism.branches if b.is_crossing)
+    crossing = next(b for b in both.arm.branches if b.is_crossing)
     slope = _orientation(both) * determinant
     for a in both.trial_branches:
         slope = slope * Select(sp.Ge(margins[a.branch.name]["tried"], 0), sp.Integer(1), sp.Integer(-1))
@@ -97,7 +97,7 @@ def determinant_margin(both: Searched) -> tuple[tuple[Statement, ...], sp.Expr]:
     """The determinant of the Jacobian at a pose that forward kinematics has found, over the scales
     of the closed steps.
     """
-    mechanism = both.mechanism
+    mechanism = both.arm
     lets, entries = solved_entries(mechanism)
     note = "determinant of the Jacobian, positions in characteristic lengths"
     system = Solve((), scaled_entries(mechanism, entries), (), DETERMINANT, note)
@@ -110,12 +110,12 @@ def _determinant_scale(both: Searched) -> sp.Expr:
     scale = sp.Mul(*[a.determinant.scale for a in both.closed_branches])
     lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
     scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})
-    return SCALE ** len(both.mechanism.task.position) / scale
+    return SCALE ** len(both.arm.task.position) / scale
 
 
 def margins_wanted(both: Searched) -> list[sp.Expr]:
     """The scaled margins of all branches at the joints, each positive on the wanted branch."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     functions = {f(j.symbol): g(j.symbol) for j in mechanism.joints for f, g in ((cosine, sp.cos), (sine, sp.sin))}
     found = []
     for b in (b for b in mechanism.branches if not b.is_crossing):
@@ -140,7 +140,7 @@ def _orientation(both: Searched) -> int:
     """+1 where the slope of the residual has the sign of det J over the determinants of the steps, else -1. All poses
     must agree.
     """
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     if both.eliminated is not None:  # no residual rises or falls: the side is that of det J
         return 1
@@ -161,7 +161,7 @@ def _orientation(both: Searched) -> int:
 
 def _measured_slope(both: Searched, samples: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
     """The slope of the residual at sampled axes, by a central difference along the searched joint."""
-    mechanism = both.mechanism
+    mechanism = both.arm
     assert mechanism.search is not None
     joint = mechanism.search.joint
     names = [*(real(c) for c in "xyz"), *both.forward.rotation]

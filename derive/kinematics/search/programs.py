@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Turning
+from derive.description.mechanism import Joint, Mechanism, Turning
 from derive.equations.axes import reference_value
 from derive.equations.named_pose import named_pose
 from derive.ir.constants import (
@@ -93,7 +93,7 @@ def step_program(mechanism: Mechanism) -> Program:
     lets, jacobian = _named_jacobian(mechanism)
     steps = tuple(real(f"step_{j.name}") for j in joints)
     shortest = _shortest_step(jacobian, names, steps)
-    body = (*_posed(mechanism), *errors, *agreement, size, *lets, *shortest)
+    body = (*posed(mechanism), *errors, *agreement, size, *lets, *shortest)
     moved = [Output(moved_to(j).name, j + _way(j, s, lengths)) for j, s in zip(joints, steps, strict=True)]
     program = normalise("step_on_closure", body, [Output(ERROR.name, ERROR), *moved])
     return replace(program, summary="A step of all joints towards the pose, and the error before it")
@@ -106,14 +106,15 @@ def fits_program(mechanism: Mechanism, wanted: Sequence[sp.Expr], determinant: s
         (), tuple(jacobian), (), determinant, "determinant of the Jacobian, positions in characteristic lengths"
     )
     fits = Let(flag(FITS), sp.And(*(sp.Ge(w, -NEARLY) for w in wanted)))
-    body: tuple[Statement, ...] = (*_posed(mechanism), *lets, last, fits)
+    body: tuple[Statement, ...] = (*posed(mechanism), *lets, last, fits)
     program = normalise("is_on_branch", body, [Output(FITS, fits.name)])
     return replace(program, summary="Whether joints are on the wanted branch")
 
 
-def _posed(mechanism: Mechanism) -> list[Statement]:
-    """The statements that compute the pose at the joints."""
-    held = [Let(j.symbol, reference_value(j)) for j in mechanism.held_joints]
+def posed(mechanism: Mechanism, value: Callable[[Joint], sp.Expr] | None = None) -> list[Statement]:
+    """The statements that compute the pose at the joints. value: of a joint, where joints are no inputs."""
+    own = [Let(j.symbol, sp.Integer(0) if j.free else value(j)) for j in mechanism.solved_joints] if value else []
+    held = [*own, *(Let(j.symbol, reference_value(j)) for j in mechanism.held_joints)]
     composed = named_pose(mechanism)
     pose = [Let(n, v) for n, v in zip(GOAL, (*composed.position, *composed.rotation), strict=True)]
     return [*held, *composed.statements, *pose]

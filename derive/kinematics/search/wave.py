@@ -137,7 +137,7 @@ def _determinant(equations: Equations) -> _Sampled:
 
 def _around(both: Searched) -> dict[str, Array]:
     """Poses of some machines, a row for each, and the joint all around the circle."""
-    found = {n: values[:, None] for n, values in samples_of(both.mechanism, both.forward).items()}
+    found = {n: values[:, None] for n, values in samples_of(both.arm, both.forward).items()}
     return found | {TRIED.name: 0.1 + 2.0 * np.pi * np.arange(_ANGLES)[None, :] / _ANGLES}
 
 

@@ -131,6 +131,396 @@ static const int PERIOD_AXES[] = {0, 1, 2, 3, 4, 5};
 
 static const int DISTANCE_AXES[] = {0, 1, 2, 3, 4, 5};
 
+/* A step of all joints towards the pose, and the error before it. */
+static softkin_status find_step_on_closure(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], q1 = given[13],
+      q2 = given[14], q3 = given[15], q4 = given[16], q5 = given[17], q6 = given[18];
+  const bool is_newton = given[12] != 0.0;
+  const double cos_q1 = cos(q1);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q1 = sin(q1);
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = cos_q1*sin_q23;
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+  const double x_at_q2 = k->a1*cos_q1;
+  const double sin_q2 = sin(q2);
+  const double r13_at_q2 = cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
+  const double x = x_at_q6 + k->d6*r13_at_q5;
+  const double error_1 = (goal_x - x)*k->one_by_machine_scale;
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double r23_at_q23 = sin_q1*sin_q23;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double r23_at_q2 = sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
+  const double y = y_at_q6 + k->d6*r23_at_q5;
+  const double error_2 = (goal_y - y)*k->one_by_machine_scale;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
+  const double cos_q2 = cos(q2);
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
+  const double z = z_at_q6 + k->d6*r33_at_q5;
+  const double error_3 = (goal_z - z)*k->one_by_machine_scale;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double sin_q6 = sin(q6);
+  const double cos_q6 = cos(q6);
+  const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
+  const double r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
+  const double r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
+  const double r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
+  const double error_4 = 0.5*(goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5
+      - goal_r21*r31_at_q6 - goal_r22*r32_at_q6 - goal_r23*r33_at_q5);
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6;
+  const double r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6;
+  const double error_5 = 0.5*(goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5
+      - goal_r31*r11_at_q6 - goal_r32*r12_at_q6 - goal_r33*r13_at_q5);
+  const double error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5
+      - goal_r11*r21_at_q6 - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
+  const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double rate_2_1 = k->one_by_machine_scale*x;
+  const double z_minus_d1 = z - k->d1;
+  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q3 = z - z_at_q3;
+  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
+  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
+  /* 3 where the rotations agree, -1 where they are half a turn apart */
+  const double agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
+      + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
+      + goal_r33*r33_at_q5;
+  /* pose error, in characteristic lengths and radians */
+  const double error = softkin_root((agreement > 1.0 ? 0.0 : 1.0) + error_1*error_1 + error_2*error_2
+      + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6);
+  const double product_in_damping = 0.001*error;
+  const double damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
+  const double product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3
+      + rate_1_4*rate_1_4 + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
+  const double product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+      + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
+  const double product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
+      + rate_1_6*rate_3_6;
+  const double rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
+  const double product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6
+      - rate_1_2_plus_rate_1_3*sin_q1;
+  const double product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5
+      + r23_at_q5*rate_1_6;
+  const double product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23;
+  const double product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3
+      + rate_2_4*rate_2_4 + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
+  const double product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
+      + rate_2_6*rate_3_6;
+  const double rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
+  const double product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6
+      - rate_2_2_plus_rate_2_3*sin_q1;
+  const double product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5
+      + r23_at_q5*rate_2_6;
+  const double product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23;
+  const double product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4
+      + rate_3_5*rate_3_5 + rate_3_6*rate_3_6;
+  const double rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
+  const double product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6
+      - rate_3_2_plus_rate_3_3*sin_q1;
+  const double product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5
+      + r23_at_q5*rate_3_6;
+  const double product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23;
+  const double product_4_4 = damping + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
+      + 2.0*sin_q1*sin_q1;
+  const double product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5
+      - 2.0*cos_q1*sin_q1;
+  const double product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23;
+  const double product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
+      + r23_at_q5*r23_at_q5;
+  const double product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
+  const double product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
+  /* damped least squares, or the step that cancels the error */
+  double system[6][7] = {{(is_newton ? rate_1_1 : product_1_1), (is_newton ? rate_1_2 : product_1_2),
+      (is_newton ? rate_1_3 : product_1_3), (is_newton ? rate_1_4 : product_1_4),
+      (is_newton ? rate_1_5 : product_1_5), (is_newton ? rate_1_6 : product_1_6), error_1},
+      {(is_newton ? rate_2_1 : product_1_2), (is_newton ? rate_2_2 : product_2_2),
+      (is_newton ? rate_2_3 : product_2_3), (is_newton ? rate_2_4 : product_2_4),
+      (is_newton ? rate_2_5 : product_2_5), (is_newton ? rate_2_6 : product_2_6), error_2},
+      {(is_newton ? 0.0 : product_1_3), (is_newton ? rate_3_2 : product_2_3),
+      (is_newton ? rate_3_3 : product_3_3), (is_newton ? rate_3_4 : product_3_4),
+      (is_newton ? rate_3_5 : product_3_5), (is_newton ? rate_3_6 : product_3_6), error_3},
+      {(is_newton ? 0.0 : product_1_4), (is_newton ? -sin_q1 : product_2_4),
+      (is_newton ? -sin_q1 : product_3_4), (is_newton ? r11_at_q23 : product_4_4),
+      (is_newton ? r12_at_q4 : product_4_5), (is_newton ? r13_at_q5 : product_4_6), error_4},
+      {(is_newton ? 0.0 : product_1_5), (is_newton ? cos_q1 : product_2_5),
+      (is_newton ? cos_q1 : product_3_5), (is_newton ? r21_at_q23 : product_4_5),
+      (is_newton ? r22_at_q4 : product_5_5), (is_newton ? r23_at_q5 : product_5_6), error_5},
+      {(is_newton ? 1.0 : product_1_6), (is_newton ? 0.0 : product_2_6), (is_newton ? 0.0 : product_3_6),
+      (is_newton ? -sin_q23 : product_4_6), (is_newton ? r32_at_q4 : product_5_6),
+      (is_newton ? r33_at_q5 : product_6_6), error_6}};
+  softkin_solve(&system[0][0], 6, 1);
+  const double multiplier_1 = system[0][6], multiplier_2 = system[1][6], multiplier_3 = system[2][6],
+      multiplier_4 = system[3][6], multiplier_5 = system[4][6], multiplier_6 = system[5][6];
+  double step_q1, step_q2, step_q3, step_q4, step_q5, step_q6;
+  if (is_newton) {
+    step_q1 = multiplier_1;
+    step_q2 = multiplier_2;
+    step_q3 = multiplier_3;
+    step_q4 = multiplier_4;
+    step_q5 = multiplier_5;
+    step_q6 = multiplier_6;
+  } else {
+    step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
+    const double sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
+    step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
+    step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
+    step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
+        + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
+    step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
+        + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
+    step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
+        + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
+  }
+  const double step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
+      + step_q5*step_q5 + step_q6*step_q6);
+  const double shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
+  found[0] = error;
+  found[1] = q1 + shrinking*step_q1;
+  found[2] = q2 + shrinking*step_q2;
+  found[3] = q3 + shrinking*step_q3;
+  found[4] = q4 + shrinking*step_q4;
+  found[5] = q5 + shrinking*step_q5;
+  found[6] = q6 + shrinking*step_q6;
+  return SOFTKIN_OK;
+}
+
+/* Whether joints are on the wanted branch. */
+static softkin_status find_is_on_branch(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  (void)why;
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double q1 = given[0], q2 = given[1], q3 = given[2], q4 = given[3], q5 = given[4];
+  const int wanted_crossing = (int)given[5], wanted_elbow = (int)given[6], wanted_shoulder = (int)given[7],
+      wanted_wrist = (int)given[8];
+  const double cos_q1 = cos(q1);
+  const double q2_plus_q3 = q2 + q3;
+  const double cos_q23 = cos(q2_plus_q3);
+  const double r11_at_q23 = cos_q1*cos_q23;
+  const double sin_q1 = sin(q1);
+  const double r21_at_q23 = cos_q23*sin_q1;
+  const double sin_q23 = sin(q2_plus_q3);
+  const double r13_at_q23 = cos_q1*sin_q23;
+  const double sin_q4 = sin(q4);
+  const double cos_q4 = cos(q4);
+  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
+  const double r23_at_q23 = sin_q1*sin_q23;
+  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
+  const double r32_at_q4 = cos_q23*sin_q4;
+  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
+  const double sin_q5 = sin(q5);
+  const double cos_q5 = cos(q5);
+  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
+  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
+  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
+  const double r33_at_q4 = cos_q23*cos_q4;
+  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
+  const double y_at_q2 = k->a1*sin_q1;
+  const double sin_q2 = sin(q2);
+  const double r23_at_q2 = sin_q1*sin_q2;
+  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
+  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
+  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
+  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
+  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
+  const double y = y_at_q6 + k->d6*r23_at_q5;
+  const double rate_1_1 = -k->one_by_machine_scale*y;
+  const double cos_q2 = cos(q2);
+  const double z_at_q3 = k->d1 + k->a2*cos_q2;
+  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
+  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
+  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
+  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
+  const double z = z_at_q6 + k->d6*r33_at_q5;
+  const double z_minus_d1 = z - k->d1;
+  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
+  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q3 = z - z_at_q3;
+  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
+  const double z_minus_z_at_q4 = z - z_at_q4;
+  const double y_minus_y_at_q4 = y - y_at_q4;
+  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
+  const double z_minus_z_at_q5 = z - z_at_q5;
+  const double y_minus_y_at_q5 = y - y_at_q5;
+  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
+  const double z_minus_z_at_q6 = z - z_at_q6;
+  const double y_minus_y_at_q6 = y - y_at_q6;
+  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
+  const double x_at_q2 = k->a1*cos_q1;
+  const double r13_at_q2 = cos_q1*sin_q2;
+  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
+  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
+  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
+  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
+  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
+  const double x = x_at_q6 + k->d6*r13_at_q5;
+  const double rate_2_1 = k->one_by_machine_scale*x;
+  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
+  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
+  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
+  const double x_minus_x_at_q4 = x - x_at_q4;
+  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
+  const double x_minus_x_at_q5 = x - x_at_q5;
+  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
+  const double x_minus_x_at_q6 = x - x_at_q6;
+  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
+  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
+  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
+  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
+  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
+  /* determinant of the Jacobian, positions in characteristic lengths */
+  double system[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
+      {rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6},
+      {0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6},
+      {0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5},
+      {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
+      {1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5}};
+  const double determinant = softkin_solve(&system[0][0], 6, 0);
+  const bool fits = ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
+      && (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k->quotient_in_fits >= -1e-6)
+      && (wanted_elbow*(k->a3*sin(q3) + cos(q3)*k->d4)*k->one_by_machine_scale >= -1e-6)
+      && (wanted_shoulder*(k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)
+      *k->one_by_machine_scale >= -1e-6);
+  found[0] = fits;
+  return SOFTKIN_OK;
+}
+
+/* The joints next to the reference. */
+static softkin_status find_meet_from_reference(const void *machine, const double *given, double *found,
+    softkin_refusal *why) {
+  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
+  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
+      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
+      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
+      reference_a1 = given[12], reference_a2 = given[13], reference_a3 = given[14], reference_a4 = given[15],
+      reference_a5 = given[16], reference_a6 = given[17];
+  const int wanted_crossing = (int)given[18], wanted_elbow = (int)given[19],
+      wanted_shoulder = (int)given[20], wanted_wrist = (int)given[21];
+  const double shared_value = softkin_angle_of(sin(reference_a1), cos(reference_a1));
+  const double shared_value_2 = softkin_angle_of(sin(reference_a2), cos(reference_a2));
+  const double shared_value_3 = softkin_angle_of(sin(reference_a3), cos(reference_a3));
+  const double shared_value_4 = softkin_angle_of(sin(reference_a4), cos(reference_a4));
+  const double shared_value_5 = softkin_angle_of(sin(reference_a5), cos(reference_a5));
+  const double shared_value_6 = softkin_angle_of(sin(reference_a6), cos(reference_a6));
+  /* one step towards the pose */
+  double followed_q1 = shared_value;
+  double followed_q2 = shared_value_2;
+  double followed_q3 = shared_value_3;
+  double followed_q4 = shared_value_4;
+  double followed_q5 = shared_value_5;
+  double followed_q6 = shared_value_6;
+  double error_before = 9.0;
+  int steps_left = 64;
+  bool is_newton = false;
+  double error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, shared_sum;
+  bool newton_next;
+  for (int pass = 0; pass < 65; pass += 1) {
+    double results[7];
+    const double arguments[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
+        goal_r32, goal_r33, goal_x, goal_y, goal_z, is_newton, followed_q1, followed_q2, followed_q3,
+        followed_q4, followed_q5, followed_q6};
+    const softkin_status status = find_step_on_closure(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
+    error = results[0];
+    moved_q1 = results[1];
+    moved_q2 = results[2];
+    moved_q3 = results[3];
+    moved_q4 = results[4];
+    moved_q5 = results[5];
+    moved_q6 = results[6];
+    newton_next = (!is_newton) && (error > 0.9*error_before);
+    shared_sum = fabs(moved_q1 - shared_value) + fabs(moved_q2 - shared_value_2)
+        + fabs(moved_q3 - shared_value_3) + fabs(moved_q4 - shared_value_4) + fabs(moved_q5 - shared_value_5)
+        + fabs(moved_q6 - shared_value_6);
+    if ((error <= 1e-14) || (shared_sum > 0.1) || (steps_left <= 0) || (error > 0.999*error_before)
+        || ((error <= 1e-11) && (2.0*error > error_before))) {
+      break;
+    }
+    followed_q1 = moved_q1;
+    followed_q2 = moved_q2;
+    followed_q3 = moved_q3;
+    followed_q4 = moved_q4;
+    followed_q5 = moved_q5;
+    followed_q6 = moved_q6;
+    error_before = error;
+    steps_left = steps_left - 1;
+    is_newton = newton_next;
+  }
+  double results_of_2[1] = {0.0};
+  if (error <= 1e-11 && shared_sum <= 0.1) {
+    const double arguments_of_2[] = {followed_q1, followed_q2, followed_q3, followed_q4, followed_q5,
+        wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist};
+    const softkin_status status_of_2 = find_is_on_branch(k, arguments_of_2, results_of_2, why);
+    if (status_of_2 != SOFTKIN_OK) {
+      return status_of_2;
+    }
+  }
+  const bool fits = results_of_2[0] != 0.0;
+  found[0] = fits;
+  found[1] = softkin_angle_of(sin(followed_q1), cos(followed_q1));
+  found[2] = softkin_angle_of(sin(followed_q2), cos(followed_q2));
+  found[3] = softkin_angle_of(sin(followed_q3), cos(followed_q3));
+  found[4] = softkin_angle_of(sin(followed_q4), cos(followed_q4));
+  found[5] = softkin_angle_of(sin(followed_q5), cos(followed_q5));
+  found[6] = softkin_angle_of(sin(followed_q6), cos(followed_q6));
+  return SOFTKIN_OK;
+}
+
 /* The product of the residuals of all branches as a sum of waves, and its rounding. */
 static softkin_status find_compute_wave(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
@@ -1005,313 +1395,6 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   return SOFTKIN_OK;
 }
 
-/* A step of all joints towards the pose, and the error before it. */
-static softkin_status find_step_on_closure(const void *machine, const double *given, double *found,
-    softkin_refusal *why) {
-  (void)why;
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
-      goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
-      goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11], q1 = given[13],
-      q2 = given[14], q3 = given[15], q4 = given[16], q5 = given[17], q6 = given[18];
-  const bool is_newton = given[12] != 0.0;
-  const double cos_q1 = cos(q1);
-  const double q2_plus_q3 = q2 + q3;
-  const double cos_q23 = cos(q2_plus_q3);
-  const double r11_at_q23 = cos_q1*cos_q23;
-  const double sin_q1 = sin(q1);
-  const double sin_q23 = sin(q2_plus_q3);
-  const double r13_at_q23 = cos_q1*sin_q23;
-  const double sin_q4 = sin(q4);
-  const double cos_q4 = cos(q4);
-  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
-  const double sin_q5 = sin(q5);
-  const double cos_q5 = cos(q5);
-  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
-  const double x_at_q2 = k->a1*cos_q1;
-  const double sin_q2 = sin(q2);
-  const double r13_at_q2 = cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
-  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
-  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
-  const double x = x_at_q6 + k->d6*r13_at_q5;
-  const double error_1 = (goal_x - x)*k->one_by_machine_scale;
-  const double r21_at_q23 = cos_q23*sin_q1;
-  const double r23_at_q23 = sin_q1*sin_q23;
-  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
-  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
-  const double y_at_q2 = k->a1*sin_q1;
-  const double r23_at_q2 = sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
-  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
-  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
-  const double y = y_at_q6 + k->d6*r23_at_q5;
-  const double error_2 = (goal_y - y)*k->one_by_machine_scale;
-  const double r33_at_q4 = cos_q23*cos_q4;
-  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
-  const double cos_q2 = cos(q2);
-  const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
-  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
-  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
-  const double z = z_at_q6 + k->d6*r33_at_q5;
-  const double error_3 = (goal_z - z)*k->one_by_machine_scale;
-  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
-  const double r32_at_q4 = cos_q23*sin_q4;
-  const double sin_q6 = sin(q6);
-  const double cos_q6 = cos(q6);
-  const double r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6;
-  const double r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6;
-  const double r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6;
-  const double r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6;
-  const double error_4 = 0.5*(goal_r31*r21_at_q6 + goal_r32*r22_at_q6 + goal_r33*r23_at_q5
-      - goal_r21*r31_at_q6 - goal_r22*r32_at_q6 - goal_r23*r33_at_q5);
-  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
-  const double r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6;
-  const double r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6;
-  const double error_5 = 0.5*(goal_r11*r31_at_q6 + goal_r12*r32_at_q6 + goal_r13*r33_at_q5
-      - goal_r31*r11_at_q6 - goal_r32*r12_at_q6 - goal_r33*r13_at_q5);
-  const double error_6 = 0.5*(goal_r21*r11_at_q6 + goal_r22*r12_at_q6 + goal_r23*r13_at_q5
-      - goal_r11*r21_at_q6 - goal_r12*r22_at_q6 - goal_r13*r23_at_q5);
-  const double rate_1_1 = -k->one_by_machine_scale*y;
-  const double rate_2_1 = k->one_by_machine_scale*x;
-  const double z_minus_d1 = z - k->d1;
-  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
-  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
-  const double z_minus_z_at_q3 = z - z_at_q3;
-  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-  const double z_minus_z_at_q4 = z - z_at_q4;
-  const double y_minus_y_at_q4 = y - y_at_q4;
-  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
-  const double z_minus_z_at_q5 = z - z_at_q5;
-  const double y_minus_y_at_q5 = y - y_at_q5;
-  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
-  const double z_minus_z_at_q6 = z - z_at_q6;
-  const double y_minus_y_at_q6 = y - y_at_q6;
-  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
-  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
-  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-  const double x_minus_x_at_q4 = x - x_at_q4;
-  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-  const double x_minus_x_at_q5 = x - x_at_q5;
-  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
-  const double x_minus_x_at_q6 = x - x_at_q6;
-  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
-  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
-  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
-  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
-  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
-  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
-  /* 3 where the rotations agree, -1 where they are half a turn apart */
-  const double agreement = goal_r11*r11_at_q6 + goal_r12*r12_at_q6 + goal_r13*r13_at_q5 + goal_r21*r21_at_q6
-      + goal_r22*r22_at_q6 + goal_r23*r23_at_q5 + goal_r31*r31_at_q6 + goal_r32*r32_at_q6
-      + goal_r33*r33_at_q5;
-  /* pose error, in characteristic lengths and radians */
-  const double error = softkin_root((agreement > 1.0 ? 0.0 : 1.0) + error_1*error_1 + error_2*error_2
-      + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6);
-  const double product_in_damping = 0.001*error;
-  const double damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
-  const double product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3
-      + rate_1_4*rate_1_4 + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
-  const double product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
-      + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
-  const double product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
-      + rate_1_6*rate_3_6;
-  const double rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
-  const double product_1_4 = r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6
-      - rate_1_2_plus_rate_1_3*sin_q1;
-  const double product_1_5 = rate_1_2_plus_rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5
-      + r23_at_q5*rate_1_6;
-  const double product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 - rate_1_4*sin_q23;
-  const double product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3
-      + rate_2_4*rate_2_4 + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
-  const double product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
-      + rate_2_6*rate_3_6;
-  const double rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
-  const double product_2_4 = r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6
-      - rate_2_2_plus_rate_2_3*sin_q1;
-  const double product_2_5 = rate_2_2_plus_rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5
-      + r23_at_q5*rate_2_6;
-  const double product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 - rate_2_4*sin_q23;
-  const double product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4
-      + rate_3_5*rate_3_5 + rate_3_6*rate_3_6;
-  const double rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
-  const double product_3_4 = r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6
-      - rate_3_2_plus_rate_3_3*sin_q1;
-  const double product_3_5 = rate_3_2_plus_rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5
-      + r23_at_q5*rate_3_6;
-  const double product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 - rate_3_4*sin_q23;
-  const double product_4_4 = damping + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5
-      + 2.0*sin_q1*sin_q1;
-  const double product_4_5 = r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5
-      - 2.0*cos_q1*sin_q1;
-  const double product_4_6 = r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5 - r11_at_q23*sin_q23;
-  const double product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4
-      + r23_at_q5*r23_at_q5;
-  const double product_5_6 = r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5 - r21_at_q23*sin_q23;
-  const double product_6_6 = 1.0 + damping + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + sin_q23*sin_q23;
-  /* damped least squares, or the step that cancels the error */
-  double system[6][7] = {{(is_newton ? rate_1_1 : product_1_1), (is_newton ? rate_1_2 : product_1_2),
-      (is_newton ? rate_1_3 : product_1_3), (is_newton ? rate_1_4 : product_1_4),
-      (is_newton ? rate_1_5 : product_1_5), (is_newton ? rate_1_6 : product_1_6), error_1},
-      {(is_newton ? rate_2_1 : product_1_2), (is_newton ? rate_2_2 : product_2_2),
-      (is_newton ? rate_2_3 : product_2_3), (is_newton ? rate_2_4 : product_2_4),
-      (is_newton ? rate_2_5 : product_2_5), (is_newton ? rate_2_6 : product_2_6), error_2},
-      {(is_newton ? 0.0 : product_1_3), (is_newton ? rate_3_2 : product_2_3),
-      (is_newton ? rate_3_3 : product_3_3), (is_newton ? rate_3_4 : product_3_4),
-      (is_newton ? rate_3_5 : product_3_5), (is_newton ? rate_3_6 : product_3_6), error_3},
-      {(is_newton ? 0.0 : product_1_4), (is_newton ? -sin_q1 : product_2_4),
-      (is_newton ? -sin_q1 : product_3_4), (is_newton ? r11_at_q23 : product_4_4),
-      (is_newton ? r12_at_q4 : product_4_5), (is_newton ? r13_at_q5 : product_4_6), error_4},
-      {(is_newton ? 0.0 : product_1_5), (is_newton ? cos_q1 : product_2_5),
-      (is_newton ? cos_q1 : product_3_5), (is_newton ? r21_at_q23 : product_4_5),
-      (is_newton ? r22_at_q4 : product_5_5), (is_newton ? r23_at_q5 : product_5_6), error_5},
-      {(is_newton ? 1.0 : product_1_6), (is_newton ? 0.0 : product_2_6), (is_newton ? 0.0 : product_3_6),
-      (is_newton ? -sin_q23 : product_4_6), (is_newton ? r32_at_q4 : product_5_6),
-      (is_newton ? r33_at_q5 : product_6_6), error_6}};
-  softkin_solve(&system[0][0], 6, 1);
-  const double multiplier_1 = system[0][6], multiplier_2 = system[1][6], multiplier_3 = system[2][6],
-      multiplier_4 = system[3][6], multiplier_5 = system[4][6], multiplier_6 = system[5][6];
-  double step_q1, step_q2, step_q3, step_q4, step_q5, step_q6;
-  if (is_newton) {
-    step_q1 = multiplier_1;
-    step_q2 = multiplier_2;
-    step_q3 = multiplier_3;
-    step_q4 = multiplier_4;
-    step_q5 = multiplier_5;
-    step_q6 = multiplier_6;
-  } else {
-    step_q1 = multiplier_6 + multiplier_1*rate_1_1 + multiplier_2*rate_2_1;
-    const double sum_in_step_q2 = multiplier_5*cos_q1 - multiplier_4*sin_q1;
-    step_q2 = sum_in_step_q2 + multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
-    step_q3 = sum_in_step_q2 + multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
-    step_q4 = multiplier_1*rate_1_4 + multiplier_2*rate_2_4 + multiplier_3*rate_3_4 + multiplier_4*r11_at_q23
-        + multiplier_5*r21_at_q23 - multiplier_6*sin_q23;
-    step_q5 = multiplier_1*rate_1_5 + multiplier_2*rate_2_5 + multiplier_3*rate_3_5 + multiplier_4*r12_at_q4
-        + multiplier_5*r22_at_q4 + multiplier_6*r32_at_q4;
-    step_q6 = multiplier_1*rate_1_6 + multiplier_2*rate_2_6 + multiplier_3*rate_3_6 + multiplier_4*r13_at_q5
-        + multiplier_5*r23_at_q5 + multiplier_6*r33_at_q5;
-  }
-  const double step_length = sqrt(step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4
-      + step_q5*step_q5 + step_q6*step_q6);
-  const double shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
-  found[0] = error;
-  found[1] = q1 + shrinking*step_q1;
-  found[2] = q2 + shrinking*step_q2;
-  found[3] = q3 + shrinking*step_q3;
-  found[4] = q4 + shrinking*step_q4;
-  found[5] = q5 + shrinking*step_q5;
-  found[6] = q6 + shrinking*step_q6;
-  return SOFTKIN_OK;
-}
-
-/* Whether joints are on the wanted branch. */
-static softkin_status find_is_on_branch(const void *machine, const double *given, double *found,
-    softkin_refusal *why) {
-  (void)why;
-  const ac6_rzryryrxryrz_j6offset_machine *k = machine;
-  const double q1 = given[0], q2 = given[1], q3 = given[2], q4 = given[3], q5 = given[4];
-  const int wanted_crossing = (int)given[5], wanted_elbow = (int)given[6], wanted_shoulder = (int)given[7],
-      wanted_wrist = (int)given[8];
-  const double cos_q1 = cos(q1);
-  const double q2_plus_q3 = q2 + q3;
-  const double cos_q23 = cos(q2_plus_q3);
-  const double r11_at_q23 = cos_q1*cos_q23;
-  const double sin_q1 = sin(q1);
-  const double r21_at_q23 = cos_q23*sin_q1;
-  const double sin_q23 = sin(q2_plus_q3);
-  const double r13_at_q23 = cos_q1*sin_q23;
-  const double sin_q4 = sin(q4);
-  const double cos_q4 = cos(q4);
-  const double r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1;
-  const double r23_at_q23 = sin_q1*sin_q23;
-  const double r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4;
-  const double r32_at_q4 = cos_q23*sin_q4;
-  const double r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4;
-  const double sin_q5 = sin(q5);
-  const double cos_q5 = cos(q5);
-  const double r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5;
-  const double r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4;
-  const double r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5;
-  const double r33_at_q4 = cos_q23*cos_q4;
-  const double r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5;
-  const double y_at_q2 = k->a1*sin_q1;
-  const double sin_q2 = sin(q2);
-  const double r23_at_q2 = sin_q1*sin_q2;
-  const double y_at_q3 = y_at_q2 + k->a2*r23_at_q2;
-  const double y_at_q4 = y_at_q3 + k->a3*r23_at_q23;
-  const double y_at_q5 = y_at_q4 + k->d4*r21_at_q23;
-  const double r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5;
-  const double y_at_q6 = y_at_q5 + k->j6_offset_x*r21_at_q5;
-  const double y = y_at_q6 + k->d6*r23_at_q5;
-  const double rate_1_1 = -k->one_by_machine_scale*y;
-  const double cos_q2 = cos(q2);
-  const double z_at_q3 = k->d1 + k->a2*cos_q2;
-  const double z_at_q4 = z_at_q3 + k->a3*cos_q23;
-  const double z_at_q5 = z_at_q4 - k->d4*sin_q23;
-  const double r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5;
-  const double z_at_q6 = z_at_q5 + k->j6_offset_x*r31_at_q5;
-  const double z = z_at_q6 + k->d6*r33_at_q5;
-  const double z_minus_d1 = z - k->d1;
-  const double cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
-  const double rate_1_2 = z_minus_d1*cos_q1_times_one_by_machine_scale;
-  const double z_minus_z_at_q3 = z - z_at_q3;
-  const double rate_1_3 = z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-  const double z_minus_z_at_q4 = z - z_at_q4;
-  const double y_minus_y_at_q4 = y - y_at_q4;
-  const double rate_1_4 = k->one_by_machine_scale*(r21_at_q23*z_minus_z_at_q4 + y_minus_y_at_q4*sin_q23);
-  const double z_minus_z_at_q5 = z - z_at_q5;
-  const double y_minus_y_at_q5 = y - y_at_q5;
-  const double rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
-  const double z_minus_z_at_q6 = z - z_at_q6;
-  const double y_minus_y_at_q6 = y - y_at_q6;
-  const double rate_1_6 = k->one_by_machine_scale*(r23_at_q5*z_minus_z_at_q6 - r33_at_q5*y_minus_y_at_q6);
-  const double x_at_q2 = k->a1*cos_q1;
-  const double r13_at_q2 = cos_q1*sin_q2;
-  const double x_at_q3 = x_at_q2 + k->a2*r13_at_q2;
-  const double x_at_q4 = x_at_q3 + k->a3*r13_at_q23;
-  const double x_at_q5 = x_at_q4 + k->d4*r11_at_q23;
-  const double r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5;
-  const double x_at_q6 = x_at_q5 + k->j6_offset_x*r11_at_q5;
-  const double x = x_at_q6 + k->d6*r13_at_q5;
-  const double rate_2_1 = k->one_by_machine_scale*x;
-  const double sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
-  const double rate_2_2 = z_minus_d1*sin_q1_times_one_by_machine_scale;
-  const double rate_2_3 = z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-  const double x_minus_x_at_q4 = x - x_at_q4;
-  const double rate_2_4 = -k->one_by_machine_scale*(r11_at_q23*z_minus_z_at_q4 + x_minus_x_at_q4*sin_q23);
-  const double x_minus_x_at_q5 = x - x_at_q5;
-  const double rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
-  const double x_minus_x_at_q6 = x - x_at_q6;
-  const double rate_2_6 = (r33_at_q5*x_minus_x_at_q6 - r13_at_q5*z_minus_z_at_q6)*k->one_by_machine_scale;
-  const double rate_3_2 = k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
-  const double rate_3_3 = k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
-  const double rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
-  const double rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
-  const double rate_3_6 = k->one_by_machine_scale*(r13_at_q5*y_minus_y_at_q6 - r23_at_q5*x_minus_x_at_q6);
-  /* determinant of the Jacobian, positions in characteristic lengths */
-  double system[6][6] = {{rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6},
-      {rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6},
-      {0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6},
-      {0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5},
-      {0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5},
-      {1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5}};
-  const double determinant = softkin_solve(&system[0][0], 6, 0);
-  const bool fits = ((k->searched ? sin_q4 : cos_q5)*wanted_wrist >= -1e-6)
-      && (-(wanted_crossing*wanted_elbow*wanted_shoulder)*determinant*k->quotient_in_fits >= -1e-6)
-      && (wanted_elbow*(k->a3*sin(q3) + cos(q3)*k->d4)*k->one_by_machine_scale >= -1e-6)
-      && (wanted_shoulder*(k->a1 + k->a2*sin_q2 + k->a3*sin_q23 + k->d4*cos_q23)
-      *k->one_by_machine_scale >= -1e-6);
-  found[0] = fits;
-  return SOFTKIN_OK;
-}
-
 /* The joints at the root nearest to the start, or next ahead of it. */
 static softkin_status find_root(const void *machine, const double *given, double *found,
     softkin_refusal *why) {
@@ -1381,7 +1464,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, length_3, growth_3, size, best_now, way_now, best_now_minus_way_now, newton_place,
       settled, least_now, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1,
-      moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, end_of_way, moved, start_minus_q6, way_ahead,
+      moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, end_of_way, moved, q6_minus_start, way_ahead,
       nearest_now, place_next, width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2,
       aside_now, error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
       at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
@@ -1506,11 +1589,11 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 18 ? number_of_start_plus_one : 0));
-    start_minus_q6 = start_ - q6;
+    q6_minus_start = q6 - start_;
     way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
-        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6),
-        cos(1e-7 + 180.0*SOFTKIN_DEGREE + start_minus_q6))
-        : fabs(softkin_angle_of(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6)));
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start))
+        : fabs(softkin_angle_of(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7)));
     is_better = fits && meets_pose && (way_ahead < nearest)
         && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
     nearest_now = is_better ? way_ahead : nearest;
@@ -1862,48 +1945,80 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     return softkin_refuse(why, SOFTKIN_UNREACHABLE,
         "without an offset, only the first branch of the crossing has a solution", "", 0.0, 0);
   }
-  double results[19];
-  const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched};
-  const softkin_status status = find_compute_wave(k, arguments, results, why);
-  if (status != SOFTKIN_OK) {
-    return status;
-  }
-  const double wave_cos_0 = results[0], wave_cos_1 = results[1], wave_cos_2 = results[2],
-      wave_cos_3 = results[3], wave_cos_4 = results[4], wave_cos_5 = results[5], wave_cos_6 = results[6],
-      wave_cos_7 = results[7], wave_cos_8 = results[8], wave_sin_1 = results[9], wave_sin_2 = results[10],
-      wave_sin_3 = results[11], wave_sin_4 = results[12], wave_sin_5 = results[13], wave_sin_6 = results[14],
-      wave_sin_7 = results[15], wave_sin_8 = results[16], noise = results[17], bound_of_fifth = results[18];
   const double reference_a1 = (ref_a1 - k->offset_a1)*SOFTKIN_DEGREE;
   const double reference_a2 = (ref_a2 - k->offset_a2)*SOFTKIN_DEGREE;
+  const double reference_a3 = (ref_a3 - k->offset_a3)*SOFTKIN_DEGREE;
+  const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
+  const double reference_a5 = (ref_a5 - k->offset_a5)*SOFTKIN_DEGREE;
   const double reference_a6 = (ref_a6 - k->offset_a6)*SOFTKIN_DEGREE;
-  /* root search along A6 */
-  double results_of_2[8];
-  const double arguments_of_2[] = {bound_of_fifth, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z,
-      k->searched, noise, false, reference_a1, reference_a2,
-      softkin_angle_of(sin(reference_a6), cos(reference_a6)), sigma_crossing, sigma_elbow, sigma_shoulder,
-      sigma_wrist, wave_cos_0, wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6,
-      wave_cos_7, wave_cos_8, wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6,
-      wave_sin_7, wave_sin_8};
-  const softkin_status status_of_2 = find_root(k, arguments_of_2, results_of_2, why);
-  if (status_of_2 != SOFTKIN_OK) {
-    return status_of_2;
+  /* the solution next to the reference */
+  double results[7] = {0.0};
+  if (k->searched) {
+    const double arguments[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, reference_a1,
+        reference_a2, reference_a3, reference_a4, reference_a5, reference_a6, sigma_crossing, sigma_elbow,
+        sigma_shoulder, sigma_wrist};
+    const softkin_status status = find_meet_from_reference(k, arguments, results, why);
+    if (status != SOFTKIN_OK) {
+      return status;
+    }
   }
-  const double found_q1 = results_of_2[2], found_q2 = results_of_2[3], found_q3 = results_of_2[4],
-      found_q4 = results_of_2[5], found_q5 = results_of_2[6], found_q6 = results_of_2[7];
-  const bool found_ = results_of_2[0] != 0.0;
+  const double followed_q1 = results[1], followed_q2 = results[2], followed_q3 = results[3],
+      followed_q4 = results[4], followed_q5 = results[5], followed_q6 = results[6];
+  const bool is_near_reference = results[0] != 0.0;
+  double results_of_2[19] = {0.0};
+  if (k->searched && !is_near_reference) {
+    const double arguments_of_2[] = {r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k->searched};
+    const softkin_status status_of_2 = find_compute_wave(k, arguments_of_2, results_of_2, why);
+    if (status_of_2 != SOFTKIN_OK) {
+      return status_of_2;
+    }
+  }
+  const double wave_cos_0 = results_of_2[0], wave_cos_1 = results_of_2[1], wave_cos_2 = results_of_2[2],
+      wave_cos_3 = results_of_2[3], wave_cos_4 = results_of_2[4], wave_cos_5 = results_of_2[5],
+      wave_cos_6 = results_of_2[6], wave_cos_7 = results_of_2[7], wave_cos_8 = results_of_2[8],
+      wave_sin_1 = results_of_2[9], wave_sin_2 = results_of_2[10], wave_sin_3 = results_of_2[11],
+      wave_sin_4 = results_of_2[12], wave_sin_5 = results_of_2[13], wave_sin_6 = results_of_2[14],
+      wave_sin_7 = results_of_2[15], wave_sin_8 = results_of_2[16], noise = results_of_2[17],
+      bound_of_fifth = results_of_2[18];
+  /* root search along A6 */
+  double results_of_3[8] = {0.0};
+  if (k->searched && !is_near_reference) {
+    const double arguments_of_3[] = {bound_of_fifth, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z,
+        k->searched, noise, false, reference_a1, reference_a2,
+        softkin_angle_of(sin(reference_a6), cos(reference_a6)), sigma_crossing, sigma_elbow, sigma_shoulder,
+        sigma_wrist, wave_cos_0, wave_cos_1, wave_cos_2, wave_cos_3, wave_cos_4, wave_cos_5, wave_cos_6,
+        wave_cos_7, wave_cos_8, wave_sin_1, wave_sin_2, wave_sin_3, wave_sin_4, wave_sin_5, wave_sin_6,
+        wave_sin_7, wave_sin_8};
+    const softkin_status status_of_3 = find_root(k, arguments_of_3, results_of_3, why);
+    if (status_of_3 != SOFTKIN_OK) {
+      return status_of_3;
+    }
+  }
+  const double found_q1 = results_of_3[2], found_q2 = results_of_3[3], found_q3 = results_of_3[4],
+      found_q4 = results_of_3[5], found_q5 = results_of_3[6], found_q6 = results_of_3[7];
+  const bool found_ = results_of_3[0] != 0.0;
   /* q6: the search along it finds no root of this branch */
-  if (!(found_ || (!k->searched))) {
+  if (!(found_ || is_near_reference || (!k->searched))) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "A6: the search along it finds no root of this branch",
         "", 0.0, 0);
   }
   double q1, q2, q3, q4, q5, q6;
   if (k->searched) {
-    q1 = found_q1;
-    q2 = found_q2;
-    q3 = found_q3;
-    q4 = found_q4;
-    q5 = found_q5;
-    q6 = found_q6;
+    if (is_near_reference) {
+      q1 = followed_q1;
+      q2 = followed_q2;
+      q3 = followed_q3;
+      q4 = followed_q4;
+      q5 = followed_q5;
+      q6 = followed_q6;
+    } else {
+      q1 = found_q1;
+      q2 = found_q2;
+      q3 = found_q3;
+      q4 = found_q4;
+      q5 = found_q5;
+      q6 = found_q6;
+    }
   } else {
     double cos_q1_closed, sin_q1_closed;
     if (distance_q1_closed > k->machine_scale_times_free_angle) {
@@ -1965,7 +2080,6 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
       direction_x_q4_closed = r33_from_q123_closed*sign_wrist_closed;
       direction_y_q4_closed = -r23_from_q1_closed*sign_wrist_closed;
     } else {
-      const double reference_a4 = (ref_a4 - k->offset_a4)*SOFTKIN_DEGREE;
       /* polar coordinates: angle q4 from the r33 and r23 equations; at a singularity: the angle of the
        * reference */
       direction_x_q4_closed = cos(reference_a4);
@@ -2727,12 +2841,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double a2_minus_length_26 = p->a2 - length_26;
   const double a2_minus_length_26_squared = a2_minus_length_26*a2_minus_length_26;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
+  const double one_by_machine_scale = 1.0/machine_scale;
+  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_26);
   const double twice_a1 = 2.0*p->a1;
   const double one_by_length_26_or_1 = 1.0/length_26_or_1;
   const double d4_by_length_26 = p->d4/length_26;
   const double a3_by_length_26 = p->a3/length_26;
-  const double one_by_machine_scale = 1.0/machine_scale;
-  const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_26);
   const double one_by_length_26 = 1.0/length_26;
   made.lowest_a1 = window_of_a1.lowest;
   made.highest_a1 = window_of_a1.highest;
@@ -2779,12 +2893,12 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.a2_minus_length_26 = a2_minus_length_26;
   made.a2_minus_length_26_squared = a2_minus_length_26_squared;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
+  made.one_by_machine_scale = one_by_machine_scale;
+  made.quotient_in_fits = quotient_in_fits;
   made.twice_a1 = twice_a1;
   made.one_by_length_26_or_1 = one_by_length_26_or_1;
   made.d4_by_length_26 = d4_by_length_26;
   made.a3_by_length_26 = a3_by_length_26;
-  made.one_by_machine_scale = one_by_machine_scale;
-  made.quotient_in_fits = quotient_in_fits;
   made.one_by_length_26 = one_by_length_26;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, searched, p->warning_distance, 1e-6};
   *(ac6_rzryryrxryrz_j6offset_machine *)machine = made;

@@ -18,10 +18,11 @@
  * turn of A5, turn of A6
  * rows of the Jacobian: x, y, z, turn x, turn y, turn z
  *
- * With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6,
- * and answers with the one that is nearest to the reference. With A6 known the arm is that with a
- * spherical wrist, and what is left is the cosine between axis 4 and axis 5. The fourth byte tells
- * whether it rises or falls with A6; without the offset it is always 1.
+ * With a lateral offset of axis A6 no closed form is known. The answer is the solution next to the
+ * reference, if all axes together are less than 5.7 degrees away; else the inverse looks for every
+ * root along A6, and answers with the one that is nearest to the reference. With A6 known the arm is
+ * that with a spherical wrist, and what is left is the cosine between axis 4 and axis 5. The fourth
+ * byte tells whether it rises or falls with A6; without the offset it is always 1.
  *
  * The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral
  * offset.
@@ -117,8 +118,8 @@ typedef struct {
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a1,
       a2, a3, d4, j6_offset_x, d6, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,
       length_26, a1_squared, a2_plus_length_26, a2_plus_length_26_squared, a2_minus_length_26,
-      a2_minus_length_26_squared, machine_scale_times_free_angle, twice_a1, one_by_length_26_or_1,
-      d4_by_length_26, a3_by_length_26, one_by_machine_scale, quotient_in_fits, one_by_length_26;
+      a2_minus_length_26_squared, machine_scale_times_free_angle, one_by_machine_scale, quotient_in_fits,
+      twice_a1, one_by_length_26_or_1, d4_by_length_26, a3_by_length_26, one_by_length_26;
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6, searched;
 } ac6_rzryryrxryrz_j6offset_machine;
 

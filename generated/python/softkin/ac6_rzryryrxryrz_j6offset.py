@@ -32,20 +32,22 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1807697 additions, 2378168 multiplications, 96113 divisions, 48014 square roots, 96068 sines
-    inverse, all 16 branches: 28923425 additions, 38050784 multiplications, 1537808 divisions, 768224 square
-    roots, 1537088 sines
+    inverse: 1827311 additions, 2403638 multiplications, 96574 divisions, 48144 square roots, 96860 sines
+    inverse, all 16 branches: 29237249 additions, 38458304 multiplications, 1545184 divisions, 770304 square
+    roots, 1549760 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 28 additions, 50 multiplications, 11 divisions, 3 square roots,
+    a branch at a singular pose, in addition: 27 additions, 50 multiplications, 11 divisions, 3 square roots,
     12 sines
+    one step towards the pose: at most 65 passes, all of which are counted
     the residuals of all branches, multiplied, at equal distances around the circle: at most 22 passes, all of
     which are counted
     one step of the search: at most 4001 passes, all of which are counted
 
-With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
-answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
-and what is left is the cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with
-A6; without the offset it is always 1.
+With a lateral offset of axis A6 no closed form is known. The answer is the solution next to the reference, if
+all axes together are less than 5.7 degrees away; else the inverse looks for every root along A6, and answers
+with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist, and what
+is left is the cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with A6;
+without the offset it is always 1.
 
 The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.
 
@@ -100,12 +102,12 @@ class Constants:
         a2_minus_length_26 = a2 - length_26
         a2_minus_length_26_squared = a2_minus_length_26 * a2_minus_length_26
         machine_scale_times_free_angle = 2e-12 * machine_scale
+        one_by_machine_scale = 1.0 / machine_scale
+        quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * length_26)
         twice_a1 = 2.0 * a1
         one_by_length_26_or_1 = 1.0 / length_26_or_1
         d4_by_length_26 = d4 / length_26
         a3_by_length_26 = a3 / length_26
-        one_by_machine_scale = 1.0 / machine_scale
-        quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * length_26)
         one_by_length_26 = 1.0 / length_26
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
@@ -113,10 +115,11 @@ class Constants:
         self.a1_squared, self.a2_plus_length_26 = a1_squared, a2_plus_length_26
         self.a2_plus_length_26_squared, self.a2_minus_length_26 = a2_plus_length_26_squared, a2_minus_length_26
         self.a2_minus_length_26_squared = a2_minus_length_26_squared
-        self.machine_scale_times_free_angle, self.twice_a1 = machine_scale_times_free_angle, twice_a1
-        self.one_by_length_26_or_1, self.d4_by_length_26 = one_by_length_26_or_1, d4_by_length_26
-        self.a3_by_length_26, self.one_by_machine_scale = a3_by_length_26, one_by_machine_scale
-        self.quotient_in_fits, self.one_by_length_26 = quotient_in_fits, one_by_length_26
+        self.machine_scale_times_free_angle = machine_scale_times_free_angle
+        self.one_by_machine_scale, self.quotient_in_fits = one_by_machine_scale, quotient_in_fits
+        self.twice_a1, self.one_by_length_26_or_1 = twice_a1, one_by_length_26_or_1
+        self.d4_by_length_26, self.a3_by_length_26 = d4_by_length_26, a3_by_length_26
+        self.one_by_length_26 = one_by_length_26
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -128,7 +131,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 20f7cb6362c3dc66"
+    KEY = "ac6_rzryryrxryrz_j6offset b9fadeb906e3cad8"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -288,6 +291,578 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         self._accept(locals())
         self._constants = Constants(self)
         self._seal()
+
+    def _step_on_closure(self, given: Values) -> Values | Status:
+        """A step of all joints towards the pose, and the error before it."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            is_newton,
+            q1,
+            q2,
+            q3,
+            q4,
+            q5,
+            q6,
+        ) = given
+        k = self._constants
+        a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
+        one_by_machine_scale = k.one_by_machine_scale
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = a1 * cos_q1
+        sin_q2 = sin(q2)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        error_1 = (goal_x - x) * one_by_machine_scale
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        error_2 = (goal_y - y) * one_by_machine_scale
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
+        error_3 = (goal_z - z) * one_by_machine_scale
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        sin_q6 = sin(q6)
+        cos_q6 = cos(q6)
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+        error_4 = 0.5 * (
+            goal_r31 * r21_at_q6
+            + goal_r32 * r22_at_q6
+            + goal_r33 * r23_at_q5
+            - goal_r21 * r31_at_q6
+            - goal_r22 * r32_at_q6
+            - goal_r23 * r33_at_q5
+        )
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        error_5 = 0.5 * (
+            goal_r11 * r31_at_q6
+            + goal_r12 * r32_at_q6
+            + goal_r13 * r33_at_q5
+            - goal_r31 * r11_at_q6
+            - goal_r32 * r12_at_q6
+            - goal_r33 * r13_at_q5
+        )
+        error_6 = 0.5 * (
+            goal_r21 * r11_at_q6
+            + goal_r22 * r12_at_q6
+            + goal_r23 * r13_at_q5
+            - goal_r11 * r21_at_q6
+            - goal_r12 * r22_at_q6
+            - goal_r13 * r23_at_q5
+        )
+        rate_1_1 = -one_by_machine_scale * y
+        rate_2_1 = one_by_machine_scale * x
+        z_minus_d1 = z - d1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
+        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        # 3 where the rotations agree, -1 where they are half a turn apart
+        agreement = (
+            goal_r11 * r11_at_q6
+            + goal_r12 * r12_at_q6
+            + goal_r13 * r13_at_q5
+            + goal_r21 * r21_at_q6
+            + goal_r22 * r22_at_q6
+            + goal_r23 * r23_at_q5
+            + goal_r31 * r31_at_q6
+            + goal_r32 * r32_at_q6
+            + goal_r33 * r33_at_q5
+        )
+        # pose error, in characteristic lengths and radians
+        error = root(
+            (0.0 if agreement > 1.0 else 1.0)
+            + error_1 * error_1
+            + error_2 * error_2
+            + error_3 * error_3
+            + error_4 * error_4
+            + error_5 * error_5
+            + error_6 * error_6
+        )
+        product_in_damping = 0.001 * error
+        damping = max(1e-13, product_in_damping)
+        product_1_1 = (
+            damping
+            + rate_1_1 * rate_1_1
+            + rate_1_2 * rate_1_2
+            + rate_1_3 * rate_1_3
+            + rate_1_4 * rate_1_4
+            + rate_1_5 * rate_1_5
+            + rate_1_6 * rate_1_6
+        )
+        product_1_2 = (
+            rate_1_1 * rate_2_1
+            + rate_1_2 * rate_2_2
+            + rate_1_3 * rate_2_3
+            + rate_1_4 * rate_2_4
+            + rate_1_5 * rate_2_5
+            + rate_1_6 * rate_2_6
+        )
+        product_1_3 = (
+            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
+        )
+        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+        product_1_4 = (
+            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+        )
+        product_1_5 = (
+            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+        )
+        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
+        product_2_2 = (
+            damping
+            + rate_2_1 * rate_2_1
+            + rate_2_2 * rate_2_2
+            + rate_2_3 * rate_2_3
+            + rate_2_4 * rate_2_4
+            + rate_2_5 * rate_2_5
+            + rate_2_6 * rate_2_6
+        )
+        product_2_3 = (
+            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
+        )
+        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+        product_2_4 = (
+            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+        )
+        product_2_5 = (
+            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+        )
+        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
+        product_3_3 = (
+            damping
+            + rate_3_2 * rate_3_2
+            + rate_3_3 * rate_3_3
+            + rate_3_4 * rate_3_4
+            + rate_3_5 * rate_3_5
+            + rate_3_6 * rate_3_6
+        )
+        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+        product_3_4 = (
+            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+        )
+        product_3_5 = (
+            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+        )
+        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+        product_4_4 = (
+            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+        )
+        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+        product_5_5 = (
+            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+        )
+        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
+        # damped least squares, or the step that cancels the error
+        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+            (
+                (
+                    (rate_1_1 if is_newton else product_1_1),
+                    (rate_1_2 if is_newton else product_1_2),
+                    (rate_1_3 if is_newton else product_1_3),
+                    (rate_1_4 if is_newton else product_1_4),
+                    (rate_1_5 if is_newton else product_1_5),
+                    (rate_1_6 if is_newton else product_1_6),
+                ),
+                (
+                    (rate_2_1 if is_newton else product_1_2),
+                    (rate_2_2 if is_newton else product_2_2),
+                    (rate_2_3 if is_newton else product_2_3),
+                    (rate_2_4 if is_newton else product_2_4),
+                    (rate_2_5 if is_newton else product_2_5),
+                    (rate_2_6 if is_newton else product_2_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_3),
+                    (rate_3_2 if is_newton else product_2_3),
+                    (rate_3_3 if is_newton else product_3_3),
+                    (rate_3_4 if is_newton else product_3_4),
+                    (rate_3_5 if is_newton else product_3_5),
+                    (rate_3_6 if is_newton else product_3_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_4),
+                    (-sin_q1 if is_newton else product_2_4),
+                    (-sin_q1 if is_newton else product_3_4),
+                    (r11_at_q23 if is_newton else product_4_4),
+                    (r12_at_q4 if is_newton else product_4_5),
+                    (r13_at_q5 if is_newton else product_4_6),
+                ),
+                (
+                    (0.0 if is_newton else product_1_5),
+                    (cos_q1 if is_newton else product_2_5),
+                    (cos_q1 if is_newton else product_3_5),
+                    (r21_at_q23 if is_newton else product_4_5),
+                    (r22_at_q4 if is_newton else product_5_5),
+                    (r23_at_q5 if is_newton else product_5_6),
+                ),
+                (
+                    (1.0 if is_newton else product_1_6),
+                    (0.0 if is_newton else product_2_6),
+                    (0.0 if is_newton else product_3_6),
+                    (-sin_q23 if is_newton else product_4_6),
+                    (r32_at_q4 if is_newton else product_5_6),
+                    (r33_at_q5 if is_newton else product_6_6),
+                ),
+            ),
+            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+        )
+        if is_newton:
+            step_q1 = multiplier_1
+            step_q2 = multiplier_2
+            step_q3 = multiplier_3
+            step_q4 = multiplier_4
+            step_q5 = multiplier_5
+            step_q6 = multiplier_6
+        else:
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_q4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
+            )
+            step_q5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_q6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
+            )
+        step_length = sqrt(
+            step_q1 * step_q1
+            + step_q2 * step_q2
+            + step_q3 * step_q3
+            + step_q4 * step_q4
+            + step_q5 * step_q5
+            + step_q6 * step_q6
+        )
+        shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
+        return (
+            error,
+            q1 + shrinking * step_q1,
+            q2 + shrinking * step_q2,
+            q3 + shrinking * step_q3,
+            q4 + shrinking * step_q4,
+            q5 + shrinking * step_q5,
+            q6 + shrinking * step_q6,
+        )
+
+    def _is_on_branch(self, given: Values) -> Values | Status:
+        """Whether joints are on the wanted branch."""
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
+        k = self._constants
+        a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
+        one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        y_at_q2 = a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
+        y = y_at_q6 + d6 * r23_at_q5
+        rate_1_1 = -one_by_machine_scale * y
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2 * cos_q2
+        z_at_q4 = z_at_q3 + a3 * cos_q23
+        z_at_q5 = z_at_q4 - d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
+        z = z_at_q6 + d6 * r33_at_q5
+        z_minus_d1 = z - d1
+        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        x_at_q2 = a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
+        x = x_at_q6 + d6 * r13_at_q5
+        rate_2_1 = one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
+        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        # determinant of the Jacobian, positions in characteristic lengths
+        (determinant,) = solve(
+            (
+                (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
+                (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
+                (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
+                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+            ),
+            (),
+        )
+        fits = (
+            ((sin_q4 if searched else cos_q5) * wanted_wrist >= -1e-6)
+            and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * quotient_in_fits >= -1e-6)
+            and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
+            and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
+        )
+        return (fits,)
+
+    def _meet_from_reference(self, given: Values) -> Values | Status:
+        """The joints next to the reference."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            reference_a1,
+            reference_a2,
+            reference_a3,
+            reference_a4,
+            reference_a5,
+            reference_a6,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        shared_value = arctan2(sin(reference_a1) + 0.0, cos(reference_a1) + 0.0)
+        shared_value_2 = arctan2(sin(reference_a2) + 0.0, cos(reference_a2) + 0.0)
+        shared_value_3 = arctan2(sin(reference_a3) + 0.0, cos(reference_a3) + 0.0)
+        shared_value_4 = arctan2(sin(reference_a4) + 0.0, cos(reference_a4) + 0.0)
+        shared_value_5 = arctan2(sin(reference_a5) + 0.0, cos(reference_a5) + 0.0)
+        shared_value_6 = arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0)
+        # one step towards the pose
+        (
+            followed_q1,
+            followed_q2,
+            followed_q3,
+            followed_q4,
+            followed_q5,
+            followed_q6,
+            error_before,
+            steps_left,
+            is_newton,
+        ) = shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
+        for _ in range(65):
+            found = self._step_on_closure(
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    is_newton,
+                    followed_q1,
+                    followed_q2,
+                    followed_q3,
+                    followed_q4,
+                    followed_q5,
+                    followed_q6,
+                )
+            )
+            if isinstance(found, Status):
+                return found
+            error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
+            newton_next = (not is_newton) and (error > 0.9 * error_before)
+            shared_sum = (
+                abs(moved_q1 - shared_value)
+                + abs(moved_q2 - shared_value_2)
+                + abs(moved_q3 - shared_value_3)
+                + abs(moved_q4 - shared_value_4)
+                + abs(moved_q5 - shared_value_5)
+                + abs(moved_q6 - shared_value_6)
+            )
+            if (
+                (error <= 1e-14)
+                or (shared_sum > 0.1)
+                or (steps_left <= 0)
+                or (error > 0.999 * error_before)
+                or ((error <= 1e-11) and (2.0 * error > error_before))
+            ):
+                break
+            followed_q1 = moved_q1
+            followed_q2 = moved_q2
+            followed_q3 = moved_q3
+            followed_q4 = moved_q4
+            followed_q5 = moved_q5
+            followed_q6 = moved_q6
+            error_before = error
+            steps_left = steps_left - 1
+            is_newton = newton_next
+        if (error <= 1e-11) and (shared_sum <= 0.1):
+            found = self._is_on_branch(
+                (
+                    followed_q1,
+                    followed_q2,
+                    followed_q3,
+                    followed_q4,
+                    followed_q5,
+                    wanted_crossing,
+                    wanted_elbow,
+                    wanted_shoulder,
+                    wanted_wrist,
+                )
+            )
+            if isinstance(found, Status):
+                return found
+            (fits,) = found
+        else:
+            (fits,) = (False,)
+        return (
+            fits,
+            arctan2(sin(followed_q1) + 0.0, cos(followed_q1) + 0.0),
+            arctan2(sin(followed_q2) + 0.0, cos(followed_q2) + 0.0),
+            arctan2(sin(followed_q3) + 0.0, cos(followed_q3) + 0.0),
+            arctan2(sin(followed_q4) + 0.0, cos(followed_q4) + 0.0),
+            arctan2(sin(followed_q5) + 0.0, cos(followed_q5) + 0.0),
+            arctan2(sin(followed_q6) + 0.0, cos(followed_q6) + 0.0),
+        )
 
     def _compute_wave(self, given: Values) -> Values | Status:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1269,452 +1844,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             arctan2(sin_q6_tried + 0.0, cos_q6_tried + 0.0),
         )
 
-    def _step_on_closure(self, given: Values) -> Values | Status:
-        """A step of all joints towards the pose, and the error before it."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            is_newton,
-            q1,
-            q2,
-            q3,
-            q4,
-            q5,
-            q6,
-        ) = given
-        k = self._constants
-        a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
-        one_by_machine_scale = k.one_by_machine_scale
-        cos_q1 = cos(q1)
-        q2_plus_q3 = q2 + q3
-        cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1 * cos_q23
-        sin_q1 = sin(q1)
-        sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1 * sin_q23
-        sin_q4 = sin(q4)
-        cos_q4 = cos(q4)
-        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-        sin_q5 = sin(q5)
-        cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-        x_at_q2 = a1 * cos_q1
-        sin_q2 = sin(q2)
-        r13_at_q2 = cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + a3 * r13_at_q23
-        x_at_q5 = x_at_q4 + d4 * r11_at_q23
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
-        x = x_at_q6 + d6 * r13_at_q5
-        error_1 = (goal_x - x) * one_by_machine_scale
-        r21_at_q23 = cos_q23 * sin_q1
-        r23_at_q23 = sin_q1 * sin_q23
-        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-        y_at_q2 = a1 * sin_q1
-        r23_at_q2 = sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + a3 * r23_at_q23
-        y_at_q5 = y_at_q4 + d4 * r21_at_q23
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
-        y = y_at_q6 + d6 * r23_at_q5
-        error_2 = (goal_y - y) * one_by_machine_scale
-        r33_at_q4 = cos_q23 * cos_q4
-        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2 * cos_q2
-        z_at_q4 = z_at_q3 + a3 * cos_q23
-        z_at_q5 = z_at_q4 - d4 * sin_q23
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
-        z = z_at_q6 + d6 * r33_at_q5
-        error_3 = (goal_z - z) * one_by_machine_scale
-        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-        r32_at_q4 = cos_q23 * sin_q4
-        sin_q6 = sin(q6)
-        cos_q6 = cos(q6)
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        error_4 = 0.5 * (
-            goal_r31 * r21_at_q6
-            + goal_r32 * r22_at_q6
-            + goal_r33 * r23_at_q5
-            - goal_r21 * r31_at_q6
-            - goal_r22 * r32_at_q6
-            - goal_r23 * r33_at_q5
-        )
-        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-        error_5 = 0.5 * (
-            goal_r11 * r31_at_q6
-            + goal_r12 * r32_at_q6
-            + goal_r13 * r33_at_q5
-            - goal_r31 * r11_at_q6
-            - goal_r32 * r12_at_q6
-            - goal_r33 * r13_at_q5
-        )
-        error_6 = 0.5 * (
-            goal_r21 * r11_at_q6
-            + goal_r22 * r12_at_q6
-            + goal_r23 * r13_at_q5
-            - goal_r11 * r21_at_q6
-            - goal_r12 * r22_at_q6
-            - goal_r13 * r23_at_q5
-        )
-        rate_1_1 = -one_by_machine_scale * y
-        rate_2_1 = one_by_machine_scale * x
-        z_minus_d1 = z - d1
-        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q4 = z - z_at_q4
-        y_minus_y_at_q4 = y - y_at_q4
-        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_minus_z_at_q5 = z - z_at_q5
-        y_minus_y_at_q5 = y - y_at_q5
-        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        z_minus_z_at_q6 = z - z_at_q6
-        y_minus_y_at_q6 = y - y_at_q6
-        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
-        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-        # 3 where the rotations agree, -1 where they are half a turn apart
-        agreement = (
-            goal_r11 * r11_at_q6
-            + goal_r12 * r12_at_q6
-            + goal_r13 * r13_at_q5
-            + goal_r21 * r21_at_q6
-            + goal_r22 * r22_at_q6
-            + goal_r23 * r23_at_q5
-            + goal_r31 * r31_at_q6
-            + goal_r32 * r32_at_q6
-            + goal_r33 * r33_at_q5
-        )
-        # pose error, in characteristic lengths and radians
-        error = root(
-            (0.0 if agreement > 1.0 else 1.0)
-            + error_1 * error_1
-            + error_2 * error_2
-            + error_3 * error_3
-            + error_4 * error_4
-            + error_5 * error_5
-            + error_6 * error_6
-        )
-        product_in_damping = 0.001 * error
-        damping = max(1e-13, product_in_damping)
-        product_1_1 = (
-            damping
-            + rate_1_1 * rate_1_1
-            + rate_1_2 * rate_1_2
-            + rate_1_3 * rate_1_3
-            + rate_1_4 * rate_1_4
-            + rate_1_5 * rate_1_5
-            + rate_1_6 * rate_1_6
-        )
-        product_1_2 = (
-            rate_1_1 * rate_2_1
-            + rate_1_2 * rate_2_2
-            + rate_1_3 * rate_2_3
-            + rate_1_4 * rate_2_4
-            + rate_1_5 * rate_2_5
-            + rate_1_6 * rate_2_6
-        )
-        product_1_3 = (
-            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
-        )
-        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-        product_1_4 = (
-            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
-        )
-        product_1_5 = (
-            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
-        )
-        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
-        product_2_2 = (
-            damping
-            + rate_2_1 * rate_2_1
-            + rate_2_2 * rate_2_2
-            + rate_2_3 * rate_2_3
-            + rate_2_4 * rate_2_4
-            + rate_2_5 * rate_2_5
-            + rate_2_6 * rate_2_6
-        )
-        product_2_3 = (
-            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
-        )
-        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-        product_2_4 = (
-            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
-        )
-        product_2_5 = (
-            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
-        )
-        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
-        product_3_3 = (
-            damping
-            + rate_3_2 * rate_3_2
-            + rate_3_3 * rate_3_3
-            + rate_3_4 * rate_3_4
-            + rate_3_5 * rate_3_5
-            + rate_3_6 * rate_3_6
-        )
-        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-        product_3_4 = (
-            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
-        )
-        product_3_5 = (
-            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
-        )
-        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
-        product_4_4 = (
-            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
-        )
-        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
-        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
-        product_5_5 = (
-            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
-        )
-        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
-        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-        # damped least squares, or the step that cancels the error
-        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
-            (
-                (
-                    (rate_1_1 if is_newton else product_1_1),
-                    (rate_1_2 if is_newton else product_1_2),
-                    (rate_1_3 if is_newton else product_1_3),
-                    (rate_1_4 if is_newton else product_1_4),
-                    (rate_1_5 if is_newton else product_1_5),
-                    (rate_1_6 if is_newton else product_1_6),
-                ),
-                (
-                    (rate_2_1 if is_newton else product_1_2),
-                    (rate_2_2 if is_newton else product_2_2),
-                    (rate_2_3 if is_newton else product_2_3),
-                    (rate_2_4 if is_newton else product_2_4),
-                    (rate_2_5 if is_newton else product_2_5),
-                    (rate_2_6 if is_newton else product_2_6),
-                ),
-                (
-                    (0.0 if is_newton else product_1_3),
-                    (rate_3_2 if is_newton else product_2_3),
-                    (rate_3_3 if is_newton else product_3_3),
-                    (rate_3_4 if is_newton else product_3_4),
-                    (rate_3_5 if is_newton else product_3_5),
-                    (rate_3_6 if is_newton else product_3_6),
-                ),
-                (
-                    (0.0 if is_newton else product_1_4),
-                    (-sin_q1 if is_newton else product_2_4),
-                    (-sin_q1 if is_newton else product_3_4),
-                    (r11_at_q23 if is_newton else product_4_4),
-                    (r12_at_q4 if is_newton else product_4_5),
-                    (r13_at_q5 if is_newton else product_4_6),
-                ),
-                (
-                    (0.0 if is_newton else product_1_5),
-                    (cos_q1 if is_newton else product_2_5),
-                    (cos_q1 if is_newton else product_3_5),
-                    (r21_at_q23 if is_newton else product_4_5),
-                    (r22_at_q4 if is_newton else product_5_5),
-                    (r23_at_q5 if is_newton else product_5_6),
-                ),
-                (
-                    (1.0 if is_newton else product_1_6),
-                    (0.0 if is_newton else product_2_6),
-                    (0.0 if is_newton else product_3_6),
-                    (-sin_q23 if is_newton else product_4_6),
-                    (r32_at_q4 if is_newton else product_5_6),
-                    (r33_at_q5 if is_newton else product_6_6),
-                ),
-            ),
-            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
-        )
-        if is_newton:
-            step_q1 = multiplier_1
-            step_q2 = multiplier_2
-            step_q3 = multiplier_3
-            step_q4 = multiplier_4
-            step_q5 = multiplier_5
-            step_q6 = multiplier_6
-        else:
-            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-            step_q4 = (
-                multiplier_1 * rate_1_4
-                + multiplier_2 * rate_2_4
-                + multiplier_3 * rate_3_4
-                + multiplier_4 * r11_at_q23
-                + multiplier_5 * r21_at_q23
-                - multiplier_6 * sin_q23
-            )
-            step_q5 = (
-                multiplier_1 * rate_1_5
-                + multiplier_2 * rate_2_5
-                + multiplier_3 * rate_3_5
-                + multiplier_4 * r12_at_q4
-                + multiplier_5 * r22_at_q4
-                + multiplier_6 * r32_at_q4
-            )
-            step_q6 = (
-                multiplier_1 * rate_1_6
-                + multiplier_2 * rate_2_6
-                + multiplier_3 * rate_3_6
-                + multiplier_4 * r13_at_q5
-                + multiplier_5 * r23_at_q5
-                + multiplier_6 * r33_at_q5
-            )
-        step_length = sqrt(
-            step_q1 * step_q1
-            + step_q2 * step_q2
-            + step_q3 * step_q3
-            + step_q4 * step_q4
-            + step_q5 * step_q5
-            + step_q6 * step_q6
-        )
-        shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
-        return (
-            error,
-            q1 + shrinking * step_q1,
-            q2 + shrinking * step_q2,
-            q3 + shrinking * step_q3,
-            q4 + shrinking * step_q4,
-            q5 + shrinking * step_q5,
-            q6 + shrinking * step_q6,
-        )
-
-    def _is_on_branch(self, given: Values) -> Values | Status:
-        """Whether joints are on the wanted branch."""
-        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
-        k = self._constants
-        a1, a2, a3, d1, d4, d6, j6_offset_x = k.a1, k.a2, k.a3, k.d1, k.d4, k.d6, k.j6_offset_x
-        one_by_machine_scale, quotient_in_fits, searched = k.one_by_machine_scale, k.quotient_in_fits, k.searched
-        cos_q1 = cos(q1)
-        q2_plus_q3 = q2 + q3
-        cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1 * cos_q23
-        sin_q1 = sin(q1)
-        r21_at_q23 = cos_q23 * sin_q1
-        sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1 * sin_q23
-        sin_q4 = sin(q4)
-        cos_q4 = cos(q4)
-        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-        r23_at_q23 = sin_q1 * sin_q23
-        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-        r32_at_q4 = cos_q23 * sin_q4
-        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-        sin_q5 = sin(q5)
-        cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-        r33_at_q4 = cos_q23 * cos_q4
-        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        y_at_q2 = a1 * sin_q1
-        sin_q2 = sin(q2)
-        r23_at_q2 = sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + a3 * r23_at_q23
-        y_at_q5 = y_at_q4 + d4 * r21_at_q23
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q5 + j6_offset_x * r21_at_q5
-        y = y_at_q6 + d6 * r23_at_q5
-        rate_1_1 = -one_by_machine_scale * y
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2 * cos_q2
-        z_at_q4 = z_at_q3 + a3 * cos_q23
-        z_at_q5 = z_at_q4 - d4 * sin_q23
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q5 + j6_offset_x * r31_at_q5
-        z = z_at_q6 + d6 * r33_at_q5
-        z_minus_d1 = z - d1
-        cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q4 = z - z_at_q4
-        y_minus_y_at_q4 = y - y_at_q4
-        rate_1_4 = one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_minus_z_at_q5 = z - z_at_q5
-        y_minus_y_at_q5 = y - y_at_q5
-        rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        z_minus_z_at_q6 = z - z_at_q6
-        y_minus_y_at_q6 = y - y_at_q6
-        rate_1_6 = one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-        x_at_q2 = a1 * cos_q1
-        r13_at_q2 = cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + a3 * r13_at_q23
-        x_at_q5 = x_at_q4 + d4 * r11_at_q23
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q5 + j6_offset_x * r11_at_q5
-        x = x_at_q6 + d6 * r13_at_q5
-        rate_2_1 = one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
-        rate_3_2 = one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-        # determinant of the Jacobian, positions in characteristic lengths
-        (determinant,) = solve(
-            (
-                (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
-                (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
-                (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
-                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
-                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
-                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
-            ),
-            (),
-        )
-        fits = (
-            ((sin_q4 if searched else cos_q5) * wanted_wrist >= -1e-6)
-            and (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * quotient_in_fits >= -1e-6)
-            and (wanted_elbow * (a3 * sin(q3) + cos(q3) * d4) * one_by_machine_scale >= -1e-6)
-            and (wanted_shoulder * (a1 + a2 * sin_q2 + a3 * sin_q23 + d4 * cos_q23) * one_by_machine_scale >= -1e-6)
-        )
-        return (fits,)
-
     def _find_root(self, given: Values) -> Values | Status:
         """The joints at the root nearest to the start, or next ahead of it."""
         (
@@ -2063,16 +2192,16 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     else (number_of_start_plus_one if number_of_start < 18 else 0)
                 )
             )
-            start_minus_q6 = start - q6
+            q6_minus_start = q6 - start
             way_ahead = (
                 1e-7
                 + 180.0 * DEGREE
                 + arctan2(
-                    -sin(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
-                    cos(1e-7 + 180.0 * DEGREE + start_minus_q6) + 0.0,
+                    -sin(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
+                    cos(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
                 )
                 if onward
-                else abs(arctan2(-sin(1e-7 + start_minus_q6) + 0.0, cos(1e-7 + start_minus_q6) + 0.0))
+                else abs(arctan2(sin(q6_minus_start - 1e-7) + 0.0, cos(q6_minus_start - 1e-7) + 0.0))
             )
             is_better = (
                 fits
@@ -2689,59 +2818,58 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             return Diagnosis(
                 Status.UNREACHABLE, "without an offset, only the first branch of the crossing has a solution", 0.0
             )
-        found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched))
-        if isinstance(found, Status):
-            return Diagnosis(found, "", 0.0)
-        (
-            wave_cos_0,
-            wave_cos_1,
-            wave_cos_2,
-            wave_cos_3,
-            wave_cos_4,
-            wave_cos_5,
-            wave_cos_6,
-            wave_cos_7,
-            wave_cos_8,
-            wave_sin_1,
-            wave_sin_2,
-            wave_sin_3,
-            wave_sin_4,
-            wave_sin_5,
-            wave_sin_6,
-            wave_sin_7,
-            wave_sin_8,
-            noise,
-            bound_of_fifth,
-        ) = found
         reference_a1 = (ref_a1 - offset_a1) * DEGREE
         reference_a2 = (ref_a2 - offset_a2) * DEGREE
+        reference_a3 = (ref_a3 - offset_a3) * DEGREE
+        reference_a4 = (ref_a4 - offset_a4) * DEGREE
+        reference_a5 = (ref_a5 - offset_a5) * DEGREE
         reference_a6 = (ref_a6 - offset_a6) * DEGREE
-        # root search along A6
-        found = self._find_root(
-            (
-                bound_of_fifth,
-                r11,
-                r12,
-                r13,
-                r21,
-                r22,
-                r23,
-                r31,
-                r32,
-                r33,
-                x,
-                y,
-                z,
-                searched,
-                noise,
+        # the solution next to the reference
+        if searched:
+            found = self._meet_from_reference(
+                (
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    x,
+                    y,
+                    z,
+                    reference_a1,
+                    reference_a2,
+                    reference_a3,
+                    reference_a4,
+                    reference_a5,
+                    reference_a6,
+                    sigma_crossing,
+                    sigma_elbow,
+                    sigma_shoulder,
+                    sigma_wrist,
+                )
+            )
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            is_near_reference, followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6 = found
+        else:
+            is_near_reference, followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6 = (
                 False,
-                reference_a1,
-                reference_a2,
-                arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0),
-                sigma_crossing,
-                sigma_elbow,
-                sigma_shoulder,
-                sigma_wrist,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            )
+        if searched and (not is_near_reference):
+            found = self._compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched))
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            (
                 wave_cos_0,
                 wave_cos_1,
                 wave_cos_2,
@@ -2759,21 +2887,109 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 wave_sin_6,
                 wave_sin_7,
                 wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = found
+        else:
+            (
+                wave_cos_0,
+                wave_cos_1,
+                wave_cos_2,
+                wave_cos_3,
+                wave_cos_4,
+                wave_cos_5,
+                wave_cos_6,
+                wave_cos_7,
+                wave_cos_8,
+                wave_sin_1,
+                wave_sin_2,
+                wave_sin_3,
+                wave_sin_4,
+                wave_sin_5,
+                wave_sin_6,
+                wave_sin_7,
+                wave_sin_8,
+                noise,
+                bound_of_fifth,
+            ) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        # root search along A6
+        if searched and (not is_near_reference):
+            found = self._find_root(
+                (
+                    bound_of_fifth,
+                    r11,
+                    r12,
+                    r13,
+                    r21,
+                    r22,
+                    r23,
+                    r31,
+                    r32,
+                    r33,
+                    x,
+                    y,
+                    z,
+                    searched,
+                    noise,
+                    False,
+                    reference_a1,
+                    reference_a2,
+                    arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0),
+                    sigma_crossing,
+                    sigma_elbow,
+                    sigma_shoulder,
+                    sigma_wrist,
+                    wave_cos_0,
+                    wave_cos_1,
+                    wave_cos_2,
+                    wave_cos_3,
+                    wave_cos_4,
+                    wave_cos_5,
+                    wave_cos_6,
+                    wave_cos_7,
+                    wave_cos_8,
+                    wave_sin_1,
+                    wave_sin_2,
+                    wave_sin_3,
+                    wave_sin_4,
+                    wave_sin_5,
+                    wave_sin_6,
+                    wave_sin_7,
+                    wave_sin_8,
+                )
             )
-        )
-        if isinstance(found, Status):
-            return Diagnosis(found, "", 0.0)
-        found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+            if isinstance(found, Status):
+                return Diagnosis(found, "", 0.0)
+            found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+        else:
+            found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = (
+                False,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+            )
         # q6: the search along it finds no root of this branch
-        if not (found_ or (not searched)):
+        if not (found_ or is_near_reference or (not searched)):
             return Diagnosis(Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0)
         if searched:
-            q1 = found_q1
-            q2 = found_q2
-            q3 = found_q3
-            q4 = found_q4
-            q5 = found_q5
-            q6 = found_q6
+            if is_near_reference:
+                q1 = followed_q1
+                q2 = followed_q2
+                q3 = followed_q3
+                q4 = followed_q4
+                q5 = followed_q5
+                q6 = followed_q6
+            else:
+                q1 = found_q1
+                q2 = found_q2
+                q3 = found_q3
+                q4 = found_q4
+                q5 = found_q5
+                q6 = found_q6
         else:
             # at a singularity: the angle of the reference
             if distance_q1_closed > machine_scale_times_free_angle:
@@ -2831,7 +3047,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 direction_x_q4_closed = sigma_wrist * r33_from_q123_closed
                 direction_y_q4_closed = -sigma_wrist * r23_from_q1_closed
             else:
-                reference_a4 = (ref_a4 - offset_a4) * DEGREE
                 direction_x_q4_closed = cos(reference_a4)
                 direction_y_q4_closed = sin(reference_a4)
             q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)

@@ -19,8 +19,8 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.sampling import machine_at
 from derive.kinematics.search.derivations import solve_both
 from derive.kinematics.search.elimination.line import Move, rotation, shift, turn
-from derive.kinematics.search.find import FIRST, LONGEST
-from derive.kinematics.search.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
+from derive.kinematics.search.loop.find import FIRST, LONGEST
+from derive.kinematics.search.loop.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE, look_program
 from derive.kinematics.search.programs import START
 from derive.kinematics.search.wave import FIFTH, NOISE, names_of, wave_program
 from derive.mechanisms import kin_ac6_rzryryrxryrz_j6offset as arm

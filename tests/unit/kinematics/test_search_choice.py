@@ -2,17 +2,24 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from sympy import cos, pi, sin
+from sympy import Integer, cos, false, pi, sin
 
 from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, distance, length
 from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
+from derive.ir.interpret import run
+from derive.ir.passes import normalise
+from derive.ir.program import Call, Let, Program, Status
+from derive.ir.symbols import Flag, is_count
 from derive.kinematics.build import build
+from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.search.choice import with_search
 from derive.solver.unsolved import Undetermined
 from derive.witness import witness
 from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
+from tests.machines.searched_machines import POINTING
 from tests.unit.kinematics.inventions import invention
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
@@ -166,3 +173,31 @@ def test_fixed_angles_in_front_of_a_wrist_and_in_it_have_their_own_names_in_ever
     mechanism = arm(front * forearm * wrist * Tx(366) * Tz(232) * Ty(221) * Ry(pi / 7))
     found = witness(build(mechanism), mechanism).inverted
     assert found is not None and found.missed is not None and found.missed[0] == 0 < found.solutions
+
+
+def without_search(branch: Program) -> Program:
+    """The program with a search that finds nothing."""
+    body = []
+    for s in branch.body:
+        is_search = isinstance(s, Call) and s.program.name in ("find_root", "compute_wave")
+        body += [Let(n, false if isinstance(n, Flag) else Integer(0)) for n in s.names] if is_search else [s]
+    return normalise(branch.name, body, branch.outputs)
+
+
+@pytest.mark.parametrize("name", POINTING)
+def test_next_to_the_reference_nothing_is_searched(name: str) -> None:
+    """Steps on the closure lead from the reference to the same solution, whatever the turn of the tool is."""
+    kin = build(POINTING[name])
+    machine = sample_machine(kin.mechanism, 5)
+    axes = sample_axes(kin.mechanism, machine, 40, 6)
+    constants, _ = run(kin.setup, machine)
+    pose, _ = run(kin.forward, {**machine, **constants, **axes})
+    signs = {f"sigma_{b.name}": np.sign(pose[f"branch_{b.name}"]) for b in kin.branches}
+    given = {**machine, **constants, **axes, **pose, **signs} | {s.name: 0 for s in kin.branch.inputs if is_count(s)}
+    names = [j.axis.name for j in kin.mechanism.joints]
+    for shift, share in ((0.9, 0.9), (40.0, 0.0)):
+        references = {j.reference.name: axes[j.axis.name] + shift for j in kin.mechanism.joints}
+        found, status = run(without_search(kin.branch), given | references)
+        ok = np.array([s is Status.OK for s in status])
+        assert ok.mean() >= share if share else not ok.any()
+        assert all(np.abs(found[n] - axes[n])[ok].max(initial=0.0) < 1e-6 for n in names)

@@ -131,7 +131,7 @@ def _orders(ring: Ring, searched: Joint | None) -> Iterator[Ring]:
     for way, first in product((ring, ring.reversed), range(JOINTS)):
         begun = way.begun_at(first)
         line, known = begun.places[FREE].joint, begun.places[SEARCHED].joint
-        if begun.has_pose(0) or begun.has_pose(FREE) or not (line.is_angle and known.is_angle):
+        if begun.has_pose(0) or begun.has_pose(FREE) or not (line.is_angle and known.is_angle and not known.free):
             continue
         if searched is None or known == searched:
             yield begun

@@ -25,8 +25,8 @@ from derive.kinematics.search.elimination.line import direction_of
 from derive.kinematics.search.elimination.matrix import UNKNOWNS, VANISHING, call_of, entries_at, rows_of
 from derive.kinematics.search.elimination.order import Elimination
 from derive.kinematics.search.elimination.ring import Fixed, Place
+from derive.kinematics.search.loop.tried import RATE, REMAINDER, ROOM
 from derive.kinematics.search.programs import begun
-from derive.kinematics.search.tried import RATE, REMAINDER, ROOM
 
 _ASIDE = sp.Float("0.7")
 """The second share of the powers by which both are compared."""

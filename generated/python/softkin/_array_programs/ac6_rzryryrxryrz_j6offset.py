@@ -38,7 +38,667 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8841
+    VALUES = 9762
+
+    def step_on_closure(self, given: Values, status: Codes) -> Values:
+        """A step of all joints towards the pose, and the error before it."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            is_newton,
+            q1,
+            q2,
+            q3,
+            q4,
+            q5,
+            q6,
+        ) = given
+        k = self.constants
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        x_at_q2 = k.a1 * cos_q1
+        sin_q2 = sin(q2)
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        error_1 = (goal_x - x) * k.one_by_machine_scale
+        r21_at_q23 = cos_q23 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        y_at_q2 = k.a1 * sin_q1
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        error_2 = (goal_y - y) * k.one_by_machine_scale
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        error_3 = (goal_z - z) * k.one_by_machine_scale
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        sin_q6 = sin(q6)
+        cos_q6 = cos(q6)
+        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
+        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
+        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
+        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
+        error_4 = 0.5 * (
+            goal_r31 * r21_at_q6
+            + goal_r32 * r22_at_q6
+            + goal_r33 * r23_at_q5
+            - goal_r21 * r31_at_q6
+            - goal_r22 * r32_at_q6
+            - goal_r23 * r33_at_q5
+        )
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
+        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
+        error_5 = 0.5 * (
+            goal_r11 * r31_at_q6
+            + goal_r12 * r32_at_q6
+            + goal_r13 * r33_at_q5
+            - goal_r31 * r11_at_q6
+            - goal_r32 * r12_at_q6
+            - goal_r33 * r13_at_q5
+        )
+        error_6 = 0.5 * (
+            goal_r21 * r11_at_q6
+            + goal_r22 * r12_at_q6
+            + goal_r23 * r13_at_q5
+            - goal_r11 * r21_at_q6
+            - goal_r12 * r22_at_q6
+            - goal_r13 * r23_at_q5
+        )
+        rate_1_1 = -k.one_by_machine_scale * y
+        rate_2_1 = k.one_by_machine_scale * x
+        z_minus_d1 = z - k.d1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
+        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        # 3 where the rotations agree, -1 where they are half a turn apart
+        agreement = (
+            goal_r11 * r11_at_q6
+            + goal_r12 * r12_at_q6
+            + goal_r13 * r13_at_q5
+            + goal_r21 * r21_at_q6
+            + goal_r22 * r22_at_q6
+            + goal_r23 * r23_at_q5
+            + goal_r31 * r31_at_q6
+            + goal_r32 * r32_at_q6
+            + goal_r33 * r33_at_q5
+        )
+        # pose error, in characteristic lengths and radians
+        error = root(
+            select(agreement > 1.0, 0.0, 1.0)
+            + error_1 * error_1
+            + error_2 * error_2
+            + error_3 * error_3
+            + error_4 * error_4
+            + error_5 * error_5
+            + error_6 * error_6
+        )
+        product_in_damping = 0.001 * error
+        damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
+        product_1_1 = (
+            damping
+            + rate_1_1 * rate_1_1
+            + rate_1_2 * rate_1_2
+            + rate_1_3 * rate_1_3
+            + rate_1_4 * rate_1_4
+            + rate_1_5 * rate_1_5
+            + rate_1_6 * rate_1_6
+        )
+        product_1_2 = (
+            rate_1_1 * rate_2_1
+            + rate_1_2 * rate_2_2
+            + rate_1_3 * rate_2_3
+            + rate_1_4 * rate_2_4
+            + rate_1_5 * rate_2_5
+            + rate_1_6 * rate_2_6
+        )
+        product_1_3 = (
+            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
+        )
+        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
+        product_1_4 = (
+            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
+        )
+        product_1_5 = (
+            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
+        )
+        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
+        product_2_2 = (
+            damping
+            + rate_2_1 * rate_2_1
+            + rate_2_2 * rate_2_2
+            + rate_2_3 * rate_2_3
+            + rate_2_4 * rate_2_4
+            + rate_2_5 * rate_2_5
+            + rate_2_6 * rate_2_6
+        )
+        product_2_3 = (
+            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
+        )
+        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
+        product_2_4 = (
+            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
+        )
+        product_2_5 = (
+            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
+        )
+        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
+        product_3_3 = (
+            damping
+            + rate_3_2 * rate_3_2
+            + rate_3_3 * rate_3_3
+            + rate_3_4 * rate_3_4
+            + rate_3_5 * rate_3_5
+            + rate_3_6 * rate_3_6
+        )
+        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
+        product_3_4 = (
+            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
+        )
+        product_3_5 = (
+            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
+        )
+        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
+        product_4_4 = (
+            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
+        )
+        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
+        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
+        product_5_5 = (
+            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
+        )
+        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
+        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
+        # damped least squares, or the step that cancels the error
+        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
+            (
+                (
+                    select(is_newton, rate_1_1, product_1_1),
+                    select(is_newton, rate_1_2, product_1_2),
+                    select(is_newton, rate_1_3, product_1_3),
+                    select(is_newton, rate_1_4, product_1_4),
+                    select(is_newton, rate_1_5, product_1_5),
+                    select(is_newton, rate_1_6, product_1_6),
+                ),
+                (
+                    select(is_newton, rate_2_1, product_1_2),
+                    select(is_newton, rate_2_2, product_2_2),
+                    select(is_newton, rate_2_3, product_2_3),
+                    select(is_newton, rate_2_4, product_2_4),
+                    select(is_newton, rate_2_5, product_2_5),
+                    select(is_newton, rate_2_6, product_2_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_3),
+                    select(is_newton, rate_3_2, product_2_3),
+                    select(is_newton, rate_3_3, product_3_3),
+                    select(is_newton, rate_3_4, product_3_4),
+                    select(is_newton, rate_3_5, product_3_5),
+                    select(is_newton, rate_3_6, product_3_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_4),
+                    select(is_newton, -sin_q1, product_2_4),
+                    select(is_newton, -sin_q1, product_3_4),
+                    select(is_newton, r11_at_q23, product_4_4),
+                    select(is_newton, r12_at_q4, product_4_5),
+                    select(is_newton, r13_at_q5, product_4_6),
+                ),
+                (
+                    select(is_newton, 0.0, product_1_5),
+                    select(is_newton, cos_q1, product_2_5),
+                    select(is_newton, cos_q1, product_3_5),
+                    select(is_newton, r21_at_q23, product_4_5),
+                    select(is_newton, r22_at_q4, product_5_5),
+                    select(is_newton, r23_at_q5, product_5_6),
+                ),
+                (
+                    select(is_newton, 1.0, product_1_6),
+                    select(is_newton, 0.0, product_2_6),
+                    select(is_newton, 0.0, product_3_6),
+                    select(is_newton, -sin_q23, product_4_6),
+                    select(is_newton, r32_at_q4, product_5_6),
+                    select(is_newton, r33_at_q5, product_6_6),
+                ),
+            ),
+            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+        )
+
+        def elsewhere_step_q1(
+            cos_q1: Real,
+            multiplier_1: Real,
+            multiplier_2: Real,
+            multiplier_3: Real,
+            multiplier_4: Real,
+            multiplier_5: Real,
+            multiplier_6: Real,
+            r11_at_q23: Real,
+            r12_at_q4: Real,
+            r13_at_q5: Real,
+            r21_at_q23: Real,
+            r22_at_q4: Real,
+            r23_at_q5: Real,
+            r32_at_q4: Real,
+            r33_at_q5: Real,
+            rate_1_1: Real,
+            rate_1_2: Real,
+            rate_1_3: Real,
+            rate_1_4: Real,
+            rate_1_5: Real,
+            rate_1_6: Real,
+            rate_2_1: Real,
+            rate_2_2: Real,
+            rate_2_3: Real,
+            rate_2_4: Real,
+            rate_2_5: Real,
+            rate_2_6: Real,
+            rate_3_2: Real,
+            rate_3_3: Real,
+            rate_3_4: Real,
+            rate_3_5: Real,
+            rate_3_6: Real,
+            sin_q1: Real,
+            sin_q23: Real,
+        ) -> Reals:
+            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
+            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
+            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
+            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
+            step_q4 = (
+                multiplier_1 * rate_1_4
+                + multiplier_2 * rate_2_4
+                + multiplier_3 * rate_3_4
+                + multiplier_4 * r11_at_q23
+                + multiplier_5 * r21_at_q23
+                - multiplier_6 * sin_q23
+            )
+            step_q5 = (
+                multiplier_1 * rate_1_5
+                + multiplier_2 * rate_2_5
+                + multiplier_3 * rate_3_5
+                + multiplier_4 * r12_at_q4
+                + multiplier_5 * r22_at_q4
+                + multiplier_6 * r32_at_q4
+            )
+            step_q6 = (
+                multiplier_1 * rate_1_6
+                + multiplier_2 * rate_2_6
+                + multiplier_3 * rate_3_6
+                + multiplier_4 * r13_at_q5
+                + multiplier_5 * r23_at_q5
+                + multiplier_6 * r33_at_q5
+            )
+            return (step_q1, step_q2, step_q3, step_q4, step_q5, step_q6)
+
+        step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = elsewhere(
+            is_newton,
+            (multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6),
+            elsewhere_step_q1,
+            (
+                cos_q1,
+                multiplier_1,
+                multiplier_2,
+                multiplier_3,
+                multiplier_4,
+                multiplier_5,
+                multiplier_6,
+                r11_at_q23,
+                r12_at_q4,
+                r13_at_q5,
+                r21_at_q23,
+                r22_at_q4,
+                r23_at_q5,
+                r32_at_q4,
+                r33_at_q5,
+                rate_1_1,
+                rate_1_2,
+                rate_1_3,
+                rate_1_4,
+                rate_1_5,
+                rate_1_6,
+                rate_2_1,
+                rate_2_2,
+                rate_2_3,
+                rate_2_4,
+                rate_2_5,
+                rate_2_6,
+                rate_3_2,
+                rate_3_3,
+                rate_3_4,
+                rate_3_5,
+                rate_3_6,
+                sin_q1,
+                sin_q23,
+            ),
+        )
+        step_length = sqrt(
+            step_q1 * step_q1
+            + step_q2 * step_q2
+            + step_q3 * step_q3
+            + step_q4 * step_q4
+            + step_q5 * step_q5
+            + step_q6 * step_q6
+        )
+        shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
+        return (
+            error,
+            q1 + shrinking * step_q1,
+            q2 + shrinking * step_q2,
+            q3 + shrinking * step_q3,
+            q4 + shrinking * step_q4,
+            q5 + shrinking * step_q5,
+            q6 + shrinking * step_q6,
+        )
+
+    def is_on_branch(self, given: Values, status: Codes) -> Values:
+        """Whether joints are on the wanted branch."""
+        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
+        k = self.constants
+        cos_q1 = cos(q1)
+        q2_plus_q3 = q2 + q3
+        cos_q23 = cos(q2_plus_q3)
+        r11_at_q23 = cos_q1 * cos_q23
+        sin_q1 = sin(q1)
+        r21_at_q23 = cos_q23 * sin_q1
+        sin_q23 = sin(q2_plus_q3)
+        r13_at_q23 = cos_q1 * sin_q23
+        sin_q4 = sin(q4)
+        cos_q4 = cos(q4)
+        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
+        r23_at_q23 = sin_q1 * sin_q23
+        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
+        r32_at_q4 = cos_q23 * sin_q4
+        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
+        sin_q5 = sin(q5)
+        cos_q5 = cos(q5)
+        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
+        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
+        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
+        r33_at_q4 = cos_q23 * cos_q4
+        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
+        y_at_q2 = k.a1 * sin_q1
+        sin_q2 = sin(q2)
+        r23_at_q2 = sin_q1 * sin_q2
+        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
+        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
+        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
+        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
+        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
+        y = y_at_q6 + k.d6 * r23_at_q5
+        rate_1_1 = -k.one_by_machine_scale * y
+        cos_q2 = cos(q2)
+        z_at_q3 = k.d1 + k.a2 * cos_q2
+        z_at_q4 = z_at_q3 + k.a3 * cos_q23
+        z_at_q5 = z_at_q4 - k.d4 * sin_q23
+        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
+        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
+        z = z_at_q6 + k.d6 * r33_at_q5
+        z_minus_d1 = z - k.d1
+        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
+        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q3 = z - z_at_q3
+        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
+        z_minus_z_at_q4 = z - z_at_q4
+        y_minus_y_at_q4 = y - y_at_q4
+        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
+        z_minus_z_at_q5 = z - z_at_q5
+        y_minus_y_at_q5 = y - y_at_q5
+        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
+        z_minus_z_at_q6 = z - z_at_q6
+        y_minus_y_at_q6 = y - y_at_q6
+        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
+        x_at_q2 = k.a1 * cos_q1
+        r13_at_q2 = cos_q1 * sin_q2
+        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
+        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
+        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
+        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
+        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
+        x = x_at_q6 + k.d6 * r13_at_q5
+        rate_2_1 = k.one_by_machine_scale * x
+        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
+        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
+        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
+        x_minus_x_at_q4 = x - x_at_q4
+        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
+        x_minus_x_at_q5 = x - x_at_q5
+        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
+        x_minus_x_at_q6 = x - x_at_q6
+        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
+        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
+        # determinant of the Jacobian, positions in characteristic lengths
+        (determinant,) = solve(
+            (
+                (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
+                (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
+                (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
+                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+            ),
+            (),
+        )
+        fits = (
+            (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
+            & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
+            & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
+            & (
+                wanted_shoulder * (k.a1 + k.a2 * sin_q2 + k.a3 * sin_q23 + k.d4 * cos_q23) * k.one_by_machine_scale
+                >= -1e-6
+            )
+        )
+        return (fits,)
+
+    def meet_from_reference(self, given: Values, status: Codes) -> Values:
+        """The joints next to the reference."""
+        (
+            goal_r11,
+            goal_r12,
+            goal_r13,
+            goal_r21,
+            goal_r22,
+            goal_r23,
+            goal_r31,
+            goal_r32,
+            goal_r33,
+            goal_x,
+            goal_y,
+            goal_z,
+            reference_a1,
+            reference_a2,
+            reference_a3,
+            reference_a4,
+            reference_a5,
+            reference_a6,
+            wanted_crossing,
+            wanted_elbow,
+            wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        shared_value = atan2(sin(reference_a1), cos(reference_a1))
+        shared_value_2 = atan2(sin(reference_a2), cos(reference_a2))
+        shared_value_3 = atan2(sin(reference_a3), cos(reference_a3))
+        shared_value_4 = atan2(sin(reference_a4), cos(reference_a4))
+        shared_value_5 = atan2(sin(reference_a5), cos(reference_a5))
+        shared_value_6 = atan2(sin(reference_a6), cos(reference_a6))
+        # one step towards the pose
+        (
+            followed_q1,
+            followed_q2,
+            followed_q3,
+            followed_q4,
+            followed_q5,
+            followed_q6,
+            error_before,
+            steps_left,
+            is_newton,
+        ) = initial(
+            shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
+        )
+        for _ in range(65):
+            found = self.step_on_closure(
+                (
+                    goal_r11,
+                    goal_r12,
+                    goal_r13,
+                    goal_r21,
+                    goal_r22,
+                    goal_r23,
+                    goal_r31,
+                    goal_r32,
+                    goal_r33,
+                    goal_x,
+                    goal_y,
+                    goal_z,
+                    is_newton,
+                    followed_q1,
+                    followed_q2,
+                    followed_q3,
+                    followed_q4,
+                    followed_q5,
+                    followed_q6,
+                ),
+                status,
+            )
+            error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
+            newton_next = (opposite(is_newton)) & (error > 0.9 * error_before)
+            shared_sum = (
+                absolute(moved_q1 - shared_value)
+                + absolute(moved_q2 - shared_value_2)
+                + absolute(moved_q3 - shared_value_3)
+                + absolute(moved_q4 - shared_value_4)
+                + absolute(moved_q5 - shared_value_5)
+                + absolute(moved_q6 - shared_value_6)
+            )
+            done = (
+                (error <= 1e-14)
+                | (shared_sum > 0.1)
+                | (steps_left <= 0)
+                | (error > 0.999 * error_before)
+                | ((error <= 1e-11) & (2.0 * error > error_before))
+            )
+            if settled(done, status):
+                break
+            (
+                followed_q1,
+                followed_q2,
+                followed_q3,
+                followed_q4,
+                followed_q5,
+                followed_q6,
+                error_before,
+                steps_left,
+                is_newton,
+            ) = advanced(
+                done,
+                (
+                    followed_q1,
+                    followed_q2,
+                    followed_q3,
+                    followed_q4,
+                    followed_q5,
+                    followed_q6,
+                    error_before,
+                    steps_left,
+                    is_newton,
+                ),
+                (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, steps_left - 1, newton_next),
+            )
+        found = run_where(
+            (error <= 1e-11) & (shared_sum <= 0.1),
+            self.is_on_branch,
+            (
+                followed_q1,
+                followed_q2,
+                followed_q3,
+                followed_q4,
+                followed_q5,
+                wanted_crossing,
+                wanted_elbow,
+                wanted_shoulder,
+                wanted_wrist,
+            ),
+            status,
+            (False,),
+        )
+        (fits,) = found
+        return (
+            fits,
+            atan2(sin(followed_q1), cos(followed_q1)),
+            atan2(sin(followed_q2), cos(followed_q2)),
+            atan2(sin(followed_q3), cos(followed_q3)),
+            atan2(sin(followed_q4), cos(followed_q4)),
+            atan2(sin(followed_q5), cos(followed_q5)),
+            atan2(sin(followed_q6), cos(followed_q6)),
+        )
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""
@@ -1111,523 +1771,6 @@ class ArrayPrograms(Programs):
             atan2(sin_q6_tried, cos_q6_tried),
         )
 
-    def step_on_closure(self, given: Values, status: Codes) -> Values:
-        """A step of all joints towards the pose, and the error before it."""
-        (
-            goal_r11,
-            goal_r12,
-            goal_r13,
-            goal_r21,
-            goal_r22,
-            goal_r23,
-            goal_r31,
-            goal_r32,
-            goal_r33,
-            goal_x,
-            goal_y,
-            goal_z,
-            is_newton,
-            q1,
-            q2,
-            q3,
-            q4,
-            q5,
-            q6,
-        ) = given
-        k = self.constants
-        cos_q1 = cos(q1)
-        q2_plus_q3 = q2 + q3
-        cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1 * cos_q23
-        sin_q1 = sin(q1)
-        sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1 * sin_q23
-        sin_q4 = sin(q4)
-        cos_q4 = cos(q4)
-        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-        sin_q5 = sin(q5)
-        cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-        x_at_q2 = k.a1 * cos_q1
-        sin_q2 = sin(q2)
-        r13_at_q2 = cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
-        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
-        x = x_at_q6 + k.d6 * r13_at_q5
-        error_1 = (goal_x - x) * k.one_by_machine_scale
-        r21_at_q23 = cos_q23 * sin_q1
-        r23_at_q23 = sin_q1 * sin_q23
-        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-        y_at_q2 = k.a1 * sin_q1
-        r23_at_q2 = sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
-        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
-        y = y_at_q6 + k.d6 * r23_at_q5
-        error_2 = (goal_y - y) * k.one_by_machine_scale
-        r33_at_q4 = cos_q23 * cos_q4
-        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23
-        z_at_q5 = z_at_q4 - k.d4 * sin_q23
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
-        z = z_at_q6 + k.d6 * r33_at_q5
-        error_3 = (goal_z - z) * k.one_by_machine_scale
-        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-        r32_at_q4 = cos_q23 * sin_q4
-        sin_q6 = sin(q6)
-        cos_q6 = cos(q6)
-        r21_at_q6 = r21_at_q5 * cos_q6 + r22_at_q4 * sin_q6
-        r31_at_q6 = r31_at_q5 * cos_q6 + r32_at_q4 * sin_q6
-        r22_at_q6 = r22_at_q4 * cos_q6 - r21_at_q5 * sin_q6
-        r32_at_q6 = r32_at_q4 * cos_q6 - r31_at_q5 * sin_q6
-        error_4 = 0.5 * (
-            goal_r31 * r21_at_q6
-            + goal_r32 * r22_at_q6
-            + goal_r33 * r23_at_q5
-            - goal_r21 * r31_at_q6
-            - goal_r22 * r32_at_q6
-            - goal_r23 * r33_at_q5
-        )
-        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-        r11_at_q6 = r11_at_q5 * cos_q6 + r12_at_q4 * sin_q6
-        r12_at_q6 = r12_at_q4 * cos_q6 - r11_at_q5 * sin_q6
-        error_5 = 0.5 * (
-            goal_r11 * r31_at_q6
-            + goal_r12 * r32_at_q6
-            + goal_r13 * r33_at_q5
-            - goal_r31 * r11_at_q6
-            - goal_r32 * r12_at_q6
-            - goal_r33 * r13_at_q5
-        )
-        error_6 = 0.5 * (
-            goal_r21 * r11_at_q6
-            + goal_r22 * r12_at_q6
-            + goal_r23 * r13_at_q5
-            - goal_r11 * r21_at_q6
-            - goal_r12 * r22_at_q6
-            - goal_r13 * r23_at_q5
-        )
-        rate_1_1 = -k.one_by_machine_scale * y
-        rate_2_1 = k.one_by_machine_scale * x
-        z_minus_d1 = z - k.d1
-        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q4 = z - z_at_q4
-        y_minus_y_at_q4 = y - y_at_q4
-        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_minus_z_at_q5 = z - z_at_q5
-        y_minus_y_at_q5 = y - y_at_q5
-        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        z_minus_z_at_q6 = z - z_at_q6
-        y_minus_y_at_q6 = y - y_at_q6
-        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
-        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-        # 3 where the rotations agree, -1 where they are half a turn apart
-        agreement = (
-            goal_r11 * r11_at_q6
-            + goal_r12 * r12_at_q6
-            + goal_r13 * r13_at_q5
-            + goal_r21 * r21_at_q6
-            + goal_r22 * r22_at_q6
-            + goal_r23 * r23_at_q5
-            + goal_r31 * r31_at_q6
-            + goal_r32 * r32_at_q6
-            + goal_r33 * r33_at_q5
-        )
-        # pose error, in characteristic lengths and radians
-        error = root(
-            select(agreement > 1.0, 0.0, 1.0)
-            + error_1 * error_1
-            + error_2 * error_2
-            + error_3 * error_3
-            + error_4 * error_4
-            + error_5 * error_5
-            + error_6 * error_6
-        )
-        product_in_damping = 0.001 * error
-        damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
-        product_1_1 = (
-            damping
-            + rate_1_1 * rate_1_1
-            + rate_1_2 * rate_1_2
-            + rate_1_3 * rate_1_3
-            + rate_1_4 * rate_1_4
-            + rate_1_5 * rate_1_5
-            + rate_1_6 * rate_1_6
-        )
-        product_1_2 = (
-            rate_1_1 * rate_2_1
-            + rate_1_2 * rate_2_2
-            + rate_1_3 * rate_2_3
-            + rate_1_4 * rate_2_4
-            + rate_1_5 * rate_2_5
-            + rate_1_6 * rate_2_6
-        )
-        product_1_3 = (
-            rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_4 * rate_3_4 + rate_1_5 * rate_3_5 + rate_1_6 * rate_3_6
-        )
-        rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3
-        product_1_4 = (
-            r11_at_q23 * rate_1_4 + r12_at_q4 * rate_1_5 + r13_at_q5 * rate_1_6 - rate_1_2_plus_rate_1_3 * sin_q1
-        )
-        product_1_5 = (
-            rate_1_2_plus_rate_1_3 * cos_q1 + r21_at_q23 * rate_1_4 + r22_at_q4 * rate_1_5 + r23_at_q5 * rate_1_6
-        )
-        product_1_6 = rate_1_1 + r32_at_q4 * rate_1_5 + r33_at_q5 * rate_1_6 - rate_1_4 * sin_q23
-        product_2_2 = (
-            damping
-            + rate_2_1 * rate_2_1
-            + rate_2_2 * rate_2_2
-            + rate_2_3 * rate_2_3
-            + rate_2_4 * rate_2_4
-            + rate_2_5 * rate_2_5
-            + rate_2_6 * rate_2_6
-        )
-        product_2_3 = (
-            rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_4 * rate_3_4 + rate_2_5 * rate_3_5 + rate_2_6 * rate_3_6
-        )
-        rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3
-        product_2_4 = (
-            r11_at_q23 * rate_2_4 + r12_at_q4 * rate_2_5 + r13_at_q5 * rate_2_6 - rate_2_2_plus_rate_2_3 * sin_q1
-        )
-        product_2_5 = (
-            rate_2_2_plus_rate_2_3 * cos_q1 + r21_at_q23 * rate_2_4 + r22_at_q4 * rate_2_5 + r23_at_q5 * rate_2_6
-        )
-        product_2_6 = rate_2_1 + r32_at_q4 * rate_2_5 + r33_at_q5 * rate_2_6 - rate_2_4 * sin_q23
-        product_3_3 = (
-            damping
-            + rate_3_2 * rate_3_2
-            + rate_3_3 * rate_3_3
-            + rate_3_4 * rate_3_4
-            + rate_3_5 * rate_3_5
-            + rate_3_6 * rate_3_6
-        )
-        rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
-        product_3_4 = (
-            r11_at_q23 * rate_3_4 + r12_at_q4 * rate_3_5 + r13_at_q5 * rate_3_6 - rate_3_2_plus_rate_3_3 * sin_q1
-        )
-        product_3_5 = (
-            rate_3_2_plus_rate_3_3 * cos_q1 + r21_at_q23 * rate_3_4 + r22_at_q4 * rate_3_5 + r23_at_q5 * rate_3_6
-        )
-        product_3_6 = r32_at_q4 * rate_3_5 + r33_at_q5 * rate_3_6 - rate_3_4 * sin_q23
-        product_4_4 = (
-            damping + r11_at_q23 * r11_at_q23 + r12_at_q4 * r12_at_q4 + r13_at_q5 * r13_at_q5 + 2.0 * sin_q1 * sin_q1
-        )
-        product_4_5 = r11_at_q23 * r21_at_q23 + r12_at_q4 * r22_at_q4 + r13_at_q5 * r23_at_q5 - 2.0 * cos_q1 * sin_q1
-        product_4_6 = r12_at_q4 * r32_at_q4 + r13_at_q5 * r33_at_q5 - r11_at_q23 * sin_q23
-        product_5_5 = (
-            damping + 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r22_at_q4 * r22_at_q4 + r23_at_q5 * r23_at_q5
-        )
-        product_5_6 = r22_at_q4 * r32_at_q4 + r23_at_q5 * r33_at_q5 - r21_at_q23 * sin_q23
-        product_6_6 = 1.0 + damping + r32_at_q4 * r32_at_q4 + r33_at_q5 * r33_at_q5 + sin_q23 * sin_q23
-        # damped least squares, or the step that cancels the error
-        _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
-            (
-                (
-                    select(is_newton, rate_1_1, product_1_1),
-                    select(is_newton, rate_1_2, product_1_2),
-                    select(is_newton, rate_1_3, product_1_3),
-                    select(is_newton, rate_1_4, product_1_4),
-                    select(is_newton, rate_1_5, product_1_5),
-                    select(is_newton, rate_1_6, product_1_6),
-                ),
-                (
-                    select(is_newton, rate_2_1, product_1_2),
-                    select(is_newton, rate_2_2, product_2_2),
-                    select(is_newton, rate_2_3, product_2_3),
-                    select(is_newton, rate_2_4, product_2_4),
-                    select(is_newton, rate_2_5, product_2_5),
-                    select(is_newton, rate_2_6, product_2_6),
-                ),
-                (
-                    select(is_newton, 0.0, product_1_3),
-                    select(is_newton, rate_3_2, product_2_3),
-                    select(is_newton, rate_3_3, product_3_3),
-                    select(is_newton, rate_3_4, product_3_4),
-                    select(is_newton, rate_3_5, product_3_5),
-                    select(is_newton, rate_3_6, product_3_6),
-                ),
-                (
-                    select(is_newton, 0.0, product_1_4),
-                    select(is_newton, -sin_q1, product_2_4),
-                    select(is_newton, -sin_q1, product_3_4),
-                    select(is_newton, r11_at_q23, product_4_4),
-                    select(is_newton, r12_at_q4, product_4_5),
-                    select(is_newton, r13_at_q5, product_4_6),
-                ),
-                (
-                    select(is_newton, 0.0, product_1_5),
-                    select(is_newton, cos_q1, product_2_5),
-                    select(is_newton, cos_q1, product_3_5),
-                    select(is_newton, r21_at_q23, product_4_5),
-                    select(is_newton, r22_at_q4, product_5_5),
-                    select(is_newton, r23_at_q5, product_5_6),
-                ),
-                (
-                    select(is_newton, 1.0, product_1_6),
-                    select(is_newton, 0.0, product_2_6),
-                    select(is_newton, 0.0, product_3_6),
-                    select(is_newton, -sin_q23, product_4_6),
-                    select(is_newton, r32_at_q4, product_5_6),
-                    select(is_newton, r33_at_q5, product_6_6),
-                ),
-            ),
-            ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
-        )
-
-        def elsewhere_step_q1(
-            cos_q1: Real,
-            multiplier_1: Real,
-            multiplier_2: Real,
-            multiplier_3: Real,
-            multiplier_4: Real,
-            multiplier_5: Real,
-            multiplier_6: Real,
-            r11_at_q23: Real,
-            r12_at_q4: Real,
-            r13_at_q5: Real,
-            r21_at_q23: Real,
-            r22_at_q4: Real,
-            r23_at_q5: Real,
-            r32_at_q4: Real,
-            r33_at_q5: Real,
-            rate_1_1: Real,
-            rate_1_2: Real,
-            rate_1_3: Real,
-            rate_1_4: Real,
-            rate_1_5: Real,
-            rate_1_6: Real,
-            rate_2_1: Real,
-            rate_2_2: Real,
-            rate_2_3: Real,
-            rate_2_4: Real,
-            rate_2_5: Real,
-            rate_2_6: Real,
-            rate_3_2: Real,
-            rate_3_3: Real,
-            rate_3_4: Real,
-            rate_3_5: Real,
-            rate_3_6: Real,
-            sin_q1: Real,
-            sin_q23: Real,
-        ) -> Reals:
-            step_q1 = multiplier_6 + multiplier_1 * rate_1_1 + multiplier_2 * rate_2_1
-            sum_in_step_q2 = multiplier_5 * cos_q1 - multiplier_4 * sin_q1
-            step_q2 = sum_in_step_q2 + multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
-            step_q3 = sum_in_step_q2 + multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
-            step_q4 = (
-                multiplier_1 * rate_1_4
-                + multiplier_2 * rate_2_4
-                + multiplier_3 * rate_3_4
-                + multiplier_4 * r11_at_q23
-                + multiplier_5 * r21_at_q23
-                - multiplier_6 * sin_q23
-            )
-            step_q5 = (
-                multiplier_1 * rate_1_5
-                + multiplier_2 * rate_2_5
-                + multiplier_3 * rate_3_5
-                + multiplier_4 * r12_at_q4
-                + multiplier_5 * r22_at_q4
-                + multiplier_6 * r32_at_q4
-            )
-            step_q6 = (
-                multiplier_1 * rate_1_6
-                + multiplier_2 * rate_2_6
-                + multiplier_3 * rate_3_6
-                + multiplier_4 * r13_at_q5
-                + multiplier_5 * r23_at_q5
-                + multiplier_6 * r33_at_q5
-            )
-            return (step_q1, step_q2, step_q3, step_q4, step_q5, step_q6)
-
-        step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = elsewhere(
-            is_newton,
-            (multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6),
-            elsewhere_step_q1,
-            (
-                cos_q1,
-                multiplier_1,
-                multiplier_2,
-                multiplier_3,
-                multiplier_4,
-                multiplier_5,
-                multiplier_6,
-                r11_at_q23,
-                r12_at_q4,
-                r13_at_q5,
-                r21_at_q23,
-                r22_at_q4,
-                r23_at_q5,
-                r32_at_q4,
-                r33_at_q5,
-                rate_1_1,
-                rate_1_2,
-                rate_1_3,
-                rate_1_4,
-                rate_1_5,
-                rate_1_6,
-                rate_2_1,
-                rate_2_2,
-                rate_2_3,
-                rate_2_4,
-                rate_2_5,
-                rate_2_6,
-                rate_3_2,
-                rate_3_3,
-                rate_3_4,
-                rate_3_5,
-                rate_3_6,
-                sin_q1,
-                sin_q23,
-            ),
-        )
-        step_length = sqrt(
-            step_q1 * step_q1
-            + step_q2 * step_q2
-            + step_q3 * step_q3
-            + step_q4 * step_q4
-            + step_q5 * step_q5
-            + step_q6 * step_q6
-        )
-        shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
-        return (
-            error,
-            q1 + shrinking * step_q1,
-            q2 + shrinking * step_q2,
-            q3 + shrinking * step_q3,
-            q4 + shrinking * step_q4,
-            q5 + shrinking * step_q5,
-            q6 + shrinking * step_q6,
-        )
-
-    def is_on_branch(self, given: Values, status: Codes) -> Values:
-        """Whether joints are on the wanted branch."""
-        q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist = given
-        k = self.constants
-        cos_q1 = cos(q1)
-        q2_plus_q3 = q2 + q3
-        cos_q23 = cos(q2_plus_q3)
-        r11_at_q23 = cos_q1 * cos_q23
-        sin_q1 = sin(q1)
-        r21_at_q23 = cos_q23 * sin_q1
-        sin_q23 = sin(q2_plus_q3)
-        r13_at_q23 = cos_q1 * sin_q23
-        sin_q4 = sin(q4)
-        cos_q4 = cos(q4)
-        r12_at_q4 = r13_at_q23 * sin_q4 - cos_q4 * sin_q1
-        r23_at_q23 = sin_q1 * sin_q23
-        r22_at_q4 = cos_q1 * cos_q4 + r23_at_q23 * sin_q4
-        r32_at_q4 = cos_q23 * sin_q4
-        r13_at_q4 = r13_at_q23 * cos_q4 + sin_q1 * sin_q4
-        sin_q5 = sin(q5)
-        cos_q5 = cos(q5)
-        r13_at_q5 = r13_at_q4 * cos_q5 + r11_at_q23 * sin_q5
-        r23_at_q4 = r23_at_q23 * cos_q4 - cos_q1 * sin_q4
-        r23_at_q5 = r23_at_q4 * cos_q5 + r21_at_q23 * sin_q5
-        r33_at_q4 = cos_q23 * cos_q4
-        r33_at_q5 = r33_at_q4 * cos_q5 - sin_q23 * sin_q5
-        y_at_q2 = k.a1 * sin_q1
-        sin_q2 = sin(q2)
-        r23_at_q2 = sin_q1 * sin_q2
-        y_at_q3 = y_at_q2 + k.a2 * r23_at_q2
-        y_at_q4 = y_at_q3 + k.a3 * r23_at_q23
-        y_at_q5 = y_at_q4 + k.d4 * r21_at_q23
-        r21_at_q5 = r21_at_q23 * cos_q5 - r23_at_q4 * sin_q5
-        y_at_q6 = y_at_q5 + k.j6_offset_x * r21_at_q5
-        y = y_at_q6 + k.d6 * r23_at_q5
-        rate_1_1 = -k.one_by_machine_scale * y
-        cos_q2 = cos(q2)
-        z_at_q3 = k.d1 + k.a2 * cos_q2
-        z_at_q4 = z_at_q3 + k.a3 * cos_q23
-        z_at_q5 = z_at_q4 - k.d4 * sin_q23
-        r31_at_q5 = -cos_q5 * sin_q23 - r33_at_q4 * sin_q5
-        z_at_q6 = z_at_q5 + k.j6_offset_x * r31_at_q5
-        z = z_at_q6 + k.d6 * r33_at_q5
-        z_minus_d1 = z - k.d1
-        cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
-        rate_1_2 = z_minus_d1 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q3 = z - z_at_q3
-        rate_1_3 = z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-        z_minus_z_at_q4 = z - z_at_q4
-        y_minus_y_at_q4 = y - y_at_q4
-        rate_1_4 = k.one_by_machine_scale * (r21_at_q23 * z_minus_z_at_q4 + y_minus_y_at_q4 * sin_q23)
-        z_minus_z_at_q5 = z - z_at_q5
-        y_minus_y_at_q5 = y - y_at_q5
-        rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
-        z_minus_z_at_q6 = z - z_at_q6
-        y_minus_y_at_q6 = y - y_at_q6
-        rate_1_6 = k.one_by_machine_scale * (r23_at_q5 * z_minus_z_at_q6 - r33_at_q5 * y_minus_y_at_q6)
-        x_at_q2 = k.a1 * cos_q1
-        r13_at_q2 = cos_q1 * sin_q2
-        x_at_q3 = x_at_q2 + k.a2 * r13_at_q2
-        x_at_q4 = x_at_q3 + k.a3 * r13_at_q23
-        x_at_q5 = x_at_q4 + k.d4 * r11_at_q23
-        r11_at_q5 = r11_at_q23 * cos_q5 - r13_at_q4 * sin_q5
-        x_at_q6 = x_at_q5 + k.j6_offset_x * r11_at_q5
-        x = x_at_q6 + k.d6 * r13_at_q5
-        rate_2_1 = k.one_by_machine_scale * x
-        sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
-        rate_2_2 = z_minus_d1 * sin_q1_times_one_by_machine_scale
-        rate_2_3 = z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-        x_minus_x_at_q4 = x - x_at_q4
-        rate_2_4 = -k.one_by_machine_scale * (r11_at_q23 * z_minus_z_at_q4 + x_minus_x_at_q4 * sin_q23)
-        x_minus_x_at_q5 = x - x_at_q5
-        rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
-        x_minus_x_at_q6 = x - x_at_q6
-        rate_2_6 = (r33_at_q5 * x_minus_x_at_q6 - r13_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
-        rate_3_2 = k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-        rate_3_3 = k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-        rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-        rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-        rate_3_6 = k.one_by_machine_scale * (r13_at_q5 * y_minus_y_at_q6 - r23_at_q5 * x_minus_x_at_q6)
-        # determinant of the Jacobian, positions in characteristic lengths
-        (determinant,) = solve(
-            (
-                (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
-                (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
-                (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
-                (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
-                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
-                (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
-            ),
-            (),
-        )
-        fits = (
-            (select(k.searched, sin_q4, cos_q5) * wanted_wrist >= -1e-6)
-            & (-(wanted_crossing * wanted_elbow * wanted_shoulder) * determinant * k.quotient_in_fits >= -1e-6)
-            & (wanted_elbow * (k.a3 * sin(q3) + cos(q3) * k.d4) * k.one_by_machine_scale >= -1e-6)
-            & (
-                wanted_shoulder * (k.a1 + k.a2 * sin_q2 + k.a3 * sin_q23 + k.d4 * cos_q23) * k.one_by_machine_scale
-                >= -1e-6
-            )
-        )
-        return (fits,)
-
     def find_root(self, given: Values, status: Codes) -> Values:
         """The joints at the root nearest to the start, or next ahead of it."""
         (
@@ -1965,13 +2108,13 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 18, number_of_start_plus_one, 0),
                 ),
             )
-            start_minus_q6 = start - q6
+            q6_minus_start = q6 - start
             way_ahead = select(
                 onward,
                 1e-7
                 + 180.0 * DEGREE
-                + atan2(-sin(1e-7 + 180.0 * DEGREE + start_minus_q6), cos(1e-7 + 180.0 * DEGREE + start_minus_q6)),
-                absolute(atan2(-sin(1e-7 + start_minus_q6), cos(1e-7 + start_minus_q6))),
+                + atan2(-sin(1e-7 + 180.0 * DEGREE - q6_minus_start), cos(1e-7 + 180.0 * DEGREE - q6_minus_start)),
+                absolute(atan2(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7))),
             )
             is_better = (
                 fits
@@ -2499,11 +2642,55 @@ class ArrayPrograms(Programs):
         sum_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = select(sum_q3_closed > 0.0, sum_q3_closed, 1.0)
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed) / divisor_of_cos_q3_closed
+        reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
+        reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
+        reference_a3 = (ref_a3 - k.offset_a3) * DEGREE
+        reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
+        reference_a5 = (ref_a5 - k.offset_a5) * DEGREE
+        reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # q3: out of reach
         require(status, k.searched | (absolute(cos_swing_q3_closed) <= 1.0000000000005), Status.UNREACHABLE)
         # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
-        found = self.compute_wave((r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched), status)
+        # the solution next to the reference
+        found = run_where(
+            k.searched,
+            self.meet_from_reference,
+            (
+                r11,
+                r12,
+                r13,
+                r21,
+                r22,
+                r23,
+                r31,
+                r32,
+                r33,
+                x,
+                y,
+                z,
+                reference_a1,
+                reference_a2,
+                reference_a3,
+                reference_a4,
+                reference_a5,
+                reference_a6,
+                sigma_crossing,
+                sigma_elbow,
+                sigma_shoulder,
+                sigma_wrist,
+            ),
+            status,
+            (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
+        is_near_reference, followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6 = found
+        found = run_where(
+            k.searched & (opposite(is_near_reference)),
+            self.compute_wave,
+            (r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched),
+            status,
+            (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        )
         (
             wave_cos_0,
             wave_cos_1,
@@ -2525,11 +2712,10 @@ class ArrayPrograms(Programs):
             noise,
             bound_of_fifth,
         ) = found
-        reference_a1 = (ref_a1 - k.offset_a1) * DEGREE
-        reference_a2 = (ref_a2 - k.offset_a2) * DEGREE
-        reference_a6 = (ref_a6 - k.offset_a6) * DEGREE
         # root search along A6
-        found = self.find_root(
+        found = run_where(
+            k.searched & (opposite(is_near_reference)),
+            self.find_root,
             (
                 bound_of_fifth,
                 r11,
@@ -2573,6 +2759,7 @@ class ArrayPrograms(Programs):
                 wave_sin_8,
             ),
             status,
+            (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         )
         found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         q1: Real
@@ -2582,12 +2769,13 @@ class ArrayPrograms(Programs):
         q5: Real
         q6: Real
         if k.searched:
-            q1 = found_q1
-            q2 = found_q2
-            q3 = found_q3
-            q4 = found_q4
-            q5 = found_q5
-            q6 = found_q6
+            holds = is_near_reference
+            q1 = select(holds, followed_q1, found_q1)
+            q2 = select(holds, followed_q2, found_q2)
+            q3 = select(holds, followed_q3, found_q3)
+            q4 = select(holds, followed_q4, found_q4)
+            q5 = select(holds, followed_q5, found_q5)
+            q6 = select(holds, followed_q6, found_q6)
         else:
 
             def elsewhere_cos_q1_closed(reference_a1: Real) -> Reals:
@@ -2651,8 +2839,7 @@ class ArrayPrograms(Programs):
                 r23_from_q1_closed * r23_from_q1_closed + r33_from_q123_closed * r33_from_q123_closed
             )
 
-            def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
-                reference_a4 = (ref_a4 - k.offset_a4) * DEGREE
+            def elsewhere_direction_x_q4_closed(reference_a4: Real) -> Reals:
                 direction_x_q4_closed = cos(reference_a4)
                 direction_y_q4_closed = sin(reference_a4)
                 return (direction_x_q4_closed, direction_y_q4_closed)
@@ -2665,7 +2852,7 @@ class ArrayPrograms(Programs):
                 radius_q4_closed > 2e-12,
                 (direction_x_q4_closed, direction_y_q4_closed),
                 elsewhere_direction_x_q4_closed,
-                (ref_a4,),
+                (reference_a4,),
             )
             q4 = atan2(direction_y_q4_closed, direction_x_q4_closed)
             r13_from_q123_closed = r13_from_q1_closed * cos_q23_closed - r33 * sin_q23_closed
@@ -2703,7 +2890,7 @@ class ArrayPrograms(Programs):
         near_a6 = select(turn_a6 != 0, 360.0 * select(turn_a6 > 0, turn_a6 - 1, turn_a6), open_a6)
         axis_a6 = nearest_period(k.offset_a6 + q6 / DEGREE, near_a6)  # A6: whole turns added
         # q6: the search along it finds no root of this branch
-        require(status, found_ | (opposite(k.searched)), Status.UNREACHABLE)
+        require(status, found_ | is_near_reference | (opposite(k.searched)), Status.UNREACHABLE)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -11,7 +11,7 @@ from derive.equations.axes import reference_value
 from derive.ir.primitives import Select, Wrap
 from derive.ir.program import Let
 from derive.ir.symbols import SCALE, flag, real
-from derive.kinematics.search.tried import ROOM
+from derive.kinematics.search.loop.tried import ROOM
 
 HAS_TWIN, TWO_WAYS = flag("has_twin"), flag("had_two_ways")
 """Whether there is a twin so far; whether the last trial told two ways to solve the others."""
@@ -66,7 +66,7 @@ def nearer_twin(joints: Sequence[Joint], near: sp.Expr, is_onward: sp.Basic) -> 
     """Whether a twin is nearer to the reference; none is asked for where roots are, one after the other."""
     ways = [real(f"way_of_{word}") for word in ("kept", TWIN)]
     for way, named in zip(ways, (kept_now, twin_now), strict=True):
-        yield Let(way, sp.Add(*[_between(j, named(j.symbol), reference_value(j)) ** 2 for j in joints]))
+        yield Let(way, sp.Add(*[_between(j, named(j.symbol), reference_value(j)) ** 2 for j in joints if not j.free]))
     takes = sp.And(sp.Not(is_onward), flag("has_twin_now"), sp.Lt(ways[1], ways[0] - near))
     yield Let(flag("takes_twin"), takes)
 

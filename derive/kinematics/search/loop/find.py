@@ -22,10 +22,17 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
-from derive.kinematics.search.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
-from derive.kinematics.search.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
-from derive.kinematics.search.starts import POINTS, is_narrow, is_new_length, is_point, next_number, of_length, place_of
-from derive.kinematics.search.tried import (
+from derive.kinematics.search.loop.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
+from derive.kinematics.search.loop.starts import (
+    POINTS,
+    is_narrow,
+    is_new_length,
+    is_point,
+    next_number,
+    of_length,
+    place_of,
+)
+from derive.kinematics.search.loop.tried import (
     AT,
     BEST_NOW,
     LEAST_NOW,
@@ -41,7 +48,7 @@ from derive.kinematics.search.tried import (
     trials_go_on,
     turned_by_a_sixth,
 )
-from derive.kinematics.search.twins import (
+from derive.kinematics.search.loop.twins import (
     HAS_TWIN,
     TWIN,
     TWO_WAYS,
@@ -53,6 +60,7 @@ from derive.kinematics.search.twins import (
     twin_now,
     twins_now,
 )
+from derive.kinematics.search.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
 
 FIND_ROOT = "find_root"
 """The name of the program."""
@@ -166,7 +174,7 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
 
 
 def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.Expr]) -> list[Output]:
-    return [Output(f"{word}_{j.symbol.name}", values[j.symbol]) for j in mechanism.joints]
+    return [Output(f"{word}_{j.symbol.name}", values[j.symbol]) for j in mechanism.joints if not j.free]
 
 
 def _call(

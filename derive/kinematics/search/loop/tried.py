@@ -15,9 +15,9 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, ToReal, larger
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import TRIED, count, flag, real
+from derive.kinematics.search.loop.starts import inside
 from derive.kinematics.search.programs import Trial, roots_named
 from derive.kinematics.search.slopes import slope_name, with_slopes
-from derive.kinematics.search.starts import inside
 
 AT, TRIALS, BEST = real("at"), count("trials"), real("best")
 """How far ahead of the start of the search the next trial is; the number of trials; the best place so far."""
