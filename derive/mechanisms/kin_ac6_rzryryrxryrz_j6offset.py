@@ -62,8 +62,8 @@ MECHANISM = Mechanism(
         "With a lateral offset of axis A6 no closed form is known. The answer is the solution next to the reference, "
         "if all axes together are less than 5.7 degrees away; else the inverse looks for every root along A6, and "
         "answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist, "
-        "and what is left is the cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with A6; "
-        "without the offset it is always 1.",
+        "and what is left is the cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls "
+        "with A6; without the offset it is always 1.",
         "The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.",
     ),
 )

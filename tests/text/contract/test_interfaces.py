@@ -13,7 +13,7 @@ from tests.text.contract.blocks import CONTRACT, FILES, UNITS, blocks, library
 pytestmark = pytest.mark.slow
 
 PRIVATE = {"FindPlatform", "EndPointOnFlange", "MeetPose", "MeetPoint"}
-PRIVATE |= {"FindRoot", "TryJoint", "ComputeWave", "LookAtWave", "StepOnClosure", "IsOnBranch", "JointsAt"}
+PRIVATE |= {"FindRoot", "TryJoint", "ComputeWave", "LookAtWave", "StepOnClosure", "IsOnBranch", "JointsAt", "MeetFromReference"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 

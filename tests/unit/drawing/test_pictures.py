@@ -60,7 +60,7 @@ def _size(root: ElementTree.Element) -> tuple[float, float]:
 
 def test_the_description_refers_to_the_shipped_pictures(mechanism: Mechanism) -> None:
     """Shown 400 pixels wide, each has two pixels for one of the window, and is hardly higher than wide."""
-    found = re.findall(r"^\.\. image:: @\((.+)\)\n   :width: 400$", _block(mechanism), re.MULTILINE)
+    found = re.findall(r"^\.\. image:: @\((.+)\)\n  :width: 400$", _block(mechanism), re.MULTILINE)
     names = (f"{mechanism.block_name}{end}.png" for end in ("", "_Configuration"))
     assert found == [name for name in names if (PICTURES / name).exists()]
     assert len(found) == 2 or not mechanism.branches
