@@ -13,7 +13,8 @@ from tests.text.contract.blocks import CONTRACT, FILES, UNITS, blocks, library
 pytestmark = pytest.mark.slow
 
 PRIVATE = {"FindPlatform", "EndPointOnFlange", "MeetPose", "MeetPoint"}
-PRIVATE |= {"FindRoot", "TryJoint", "ComputeWave", "LookAtWave", "StepOnClosure", "IsOnBranch", "JointsAt", "MeetFromReference"}
+PRIVATE |= {"FindRoot", "TryJoint", "ComputeWave", "LookAtWave", "StepOnClosure", "IsOnBranch", "JointsAt"}
+PRIVATE |= {"MeetFromReference"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 
