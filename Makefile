@@ -17,7 +17,7 @@ BENCH := .venv-bench
 
 WHEEL := .venv-wheel
 
-.PHONY: generate flat pacdrive check test sweep quick report bench peers wheel javascript c clang linuxcnc fmu klipper br \
+.PHONY: generate flat pacdrive check test sweep quick report bench costs peers wheel javascript c clang linuxcnc fmu klipper br \
 	view docs prove-linuxcnc prove-klipper
 
 generate: $(READY)
@@ -82,6 +82,11 @@ bench: $(READY) $(BENCH)/ready
 	$(RUN) -m tests.native.build
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench
 	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.rows
+
+# Instructions of a call in C on four ARM processors, counted in QEMU: templates/costs.toml, and the tables of the guides. It names
+# the compilers that it needs, and installs nothing. Then: make generate, for the headers.
+costs: $(READY)
+	$(RUN) -m bench.costs
 
 # The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md.
 peers: $(READY) $(BENCH)/peers

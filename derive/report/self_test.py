@@ -5,7 +5,7 @@ All values are drawn with fixed seeds and rounded, so that every computer genera
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain, islice
@@ -121,9 +121,7 @@ class _Vectors:
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
         self._mechanism = machine.kinematics.mechanism
-        self._candidates = _candidates(machine)
-        if np.isnan(np.min(margins(machine, self._candidates), axis=0)).all():  # few poses close: draw near nominal
-            self._candidates = _candidates(machine, _NEAR)
+        self._candidates = candidates(machine)
 
     @cached_property
     def poses(self) -> tuple[Reals, ...]:
@@ -169,11 +167,7 @@ class _Vectors:
     def _regular(self) -> list[Reals]:
         """Poses away from singular ones, to which the inverse leads back."""
         found: list[Reals] = []
-        least = np.min(np.abs(margins(self.machine, self._candidates)), axis=0)
-        regular = min(_REGULAR, float(np.nanmax(np.append(least, 0.0))) / 2)  # margins of some machines are never large
-        for axes, smallest in zip(self._candidates, least, strict=True):
-            if not smallest > regular:
-                continue
+        for axes in regular_poses(self.machine, self._candidates):
             _, frame, own = forward(self.machine, axes)
             status, back = inverse(self.machine, frame, own, axes)
             if status is Status.OK and np.allclose(back, axes, rtol=0, atol=1e-3):
@@ -285,6 +279,19 @@ class _Vectors:
         if self._mechanism.branches:
             cases.append(self._inverse(frame, (4, *own[1:]), axes))
         yield from (case for case in cases if case.status is not Status.OK)
+
+
+def candidates(machine: Machine) -> list[Reals]:
+    """Axis values over the whole ranges; where few poses close, near the nominal values."""
+    drawn = _candidates(machine)
+    return _candidates(machine, _NEAR) if np.isnan(np.min(margins(machine, drawn), axis=0)).all() else drawn
+
+
+def regular_poses(machine: Machine, drawn: Sequence[Reals]) -> Iterator[Reals]:
+    """Those of some axis values that are away from singular ones."""
+    least = np.min(np.abs(margins(machine, drawn)), axis=0)
+    regular = min(_REGULAR, float(np.nanmax(np.append(least, 0.0))) / 2)  # margins of some machines are never large
+    yield from (axes for axes, smallest in zip(drawn, least, strict=True) if smallest > regular)
 
 
 def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:

@@ -9,6 +9,7 @@ block: the data of a block that templates read
 calls: the programs of a block without the steps that the base block does
 description: the comment of a block, which the SoftMotion configurator shows
 inputs: the inputs of a block: type, default, range, unit
+instructions: what a call takes on processors of controllers, as it was counted
 library: all files: text, PLCopenXML and the import script
 methods: the methods of a block, and the spelling of the values that they read
 pictures: the pictures in the descriptions of blocks, and the overview

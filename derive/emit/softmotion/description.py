@@ -14,6 +14,7 @@ from derive.description.mechanism import Kind, Mechanism, Role
 from derive.emit.picture.style import SHOWN
 from derive.emit.softmotion.block import Block
 from derive.emit.softmotion.inputs import inputs
+from derive.emit.softmotion.instructions import sentences
 from derive.emit.softmotion.pictures import CHOICES
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
@@ -99,6 +100,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=[*_costs(costs_of(kinematics), block), *_looped(kinematics, costs_of(kinematics))],
+        counted=_lines(sentences(block.name, costs_of(kinematics))),
         tasks=_lines(_BOUNDED.rstrip() if block.is_transformation else _TASKS[block.has_settings]),
         notes=[line for note in mechanism.all_notes for line in _item(respelled(note, names))]
         + [line for note in further for line in _item(note)],

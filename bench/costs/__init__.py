@@ -1,0 +1,1 @@
+"""Instructions of a call in C on processors of controllers: `make costs`."""
