@@ -206,8 +206,8 @@ def _needing(methods: Mapping[str, Mapping[str, Any]]) -> dict[str, frozenset[st
 
 
 def _constants(table: Mapping[str, Any], types: Mapping[str, str], own: Collection[str]) -> dict[str, Constant]:
-    """The constants of a group by the name under which templates know them. own: types that a profile brings along, whose
-    enumerators these are.
+    """The constants of a group by the name under which templates know them. own: types that a profile brings along, and
+    whose enumerators these are.
     """
     stated = table["type"]
     kind = types.get(stated, stated)
