@@ -255,51 +255,66 @@ static softkin_status bad_input(softkin_refusal *why) {
   return softkin_refuse(why, SOFTKIN_BAD_INPUT, "", "", 0.0, 0);
 }
 
+/* The rates of the joints by those of the pose, in front of them the matrix that is solved. */
+static bool rates_of(const double *joint, const double *words, double *system) {
+  double rows[SOFTKIN_MOST_ROWS*LETTERS], turns[3][3];
+  const softkin_frame there = frame_at(words);
+  char *const moved = (char *)THIS.machine + KIND->machine_size;
+  double *line = system, *letters = system + JOINTS;
+  if (softkin_jacobian_near(KIND, THIS.machine, joint, &there, moved, rows) != SOFTKIN_OK) {
+    return false;
+  }
+  softkin_turns_by_angles(&words[A_WORD], turns);
+  for (int row = 0; row < KIND->row_count; row += 1) {
+    const int coordinate = coordinate_of(row);
+    if (coordinate < 0 && THIS.angles == 0) {
+      continue;
+    }
+    for (int i = 0; i < JOINTS; i += 1) {
+      line[i] = rows[row*JOINTS + i]*softkin_unit_of(KIND, i);
+    }
+    if (coordinate >= 0) {
+      letters[coordinate] = 1.0;
+    }
+    for (int i = 3 - THIS.angles; coordinate < 0 && i < 3; i += 1) {
+      letters[A_WORD + i] = turns[KIND->rows[row][5] - 'x'][i]*SOFTKIN_DEGREE; /* "turn x" */
+    }
+    line += JOINTS + LETTERS;
+    letters += JOINTS + LETTERS;
+  }
+  for (int i = 0; i < JOINTS; i += 1) {
+    if (THIS.own_letters[i] >= 0) {
+      line[i] = 1.0;
+      letters[THIS.own_letters[i]] = 1.0;
+      line += JOINTS + LETTERS;
+      letters += JOINTS + LETTERS;
+    }
+  }
+  return softkin_solve(system, JOINTS, LETTERS) != 0.0;
+}
+
 /* Inverse kinematics of a machine whose rotary joints are letters: the position follows from the linear
  * joints in a straight line, which one step finds. */
 static softkin_status inverse_of_axes(const double *words, double *axes, softkin_refusal *why) {
-  double system[3*4], rows[SOFTKIN_MOST_ROWS*LETTERS];
+  double system[LETTERS*2*LETTERS] = {0.0};
   softkin_frame frame;
-  int linear = 0, place = 0;
   for (int i = 0; i < JOINTS; i += 1) {
-    linear += THIS.own_letters[i] < 0 ? 1 : 0;
     axes[i] = THIS.own_letters[i] >= 0 ? words[THIS.own_letters[i]] : 0.0;
   }
-  softkin_status status = softkin_forward(KIND, THIS.machine, axes, NULL, &frame, NULL, NULL, why);
-  if (status == SOFTKIN_OK) {
-    status = softkin_jacobian(KIND, THIS.machine, axes, rows, why);
-  }
+  const softkin_status status = softkin_forward(KIND, THIS.machine, axes, NULL, &frame, NULL, NULL, why);
   if (status != SOFTKIN_OK) {
     return status;
   }
+  bool is_found = rates_of(axes, words, system);
   for (int row = 0; row < KIND->row_count; row += 1) {
-    const int coordinate = coordinate_of(row);
-    if (coordinate < 0) {
-      continue;
-    }
-    if (!softkin_are_reasonable(&words[coordinate], 1)) {
-      return bad_input(why);
-    }
-    for (int i = 0; i < JOINTS; i += 1) {
-      if (THIS.own_letters[i] < 0) {
-        system[place] = rows[row*JOINTS + i];
-        place += 1;
-      }
-    }
-    system[place] = words[coordinate] - frame.position[coordinate];
-    place += 1;
-  }
-  if (linear > 0 && softkin_solve(system, linear, 1) == 0.0) {
-    return bad_input(why);
-  }
-  place = linear;
-  for (int i = 0; i < JOINTS; i += 1) {
-    if (THIS.own_letters[i] < 0) {
-      axes[i] = system[place];
-      place += linear + 1;
+    const int letter = coordinate_of(row);
+    is_found = is_found && (letter < 0 || softkin_are_reasonable(&words[letter], 1));
+    for (int i = 0; is_found && letter >= 0 && i < JOINTS; i += 1) {
+      const double rate = THIS.own_letters[i] < 0 ? system[i*(JOINTS + LETTERS) + JOINTS + letter] : 0.0;
+      axes[i] += rate*(words[letter] - frame.position[letter]);
     }
   }
-  const bool is_found = softkin_are_reasonable(axes, JOINTS);
+  is_found = is_found && softkin_are_reasonable(axes, JOINTS);
   return is_found ? softkin_limits(KIND, THIS.machine, axes, why) : bad_input(why);
 }
 
@@ -447,44 +462,6 @@ MODULE_LICENSE("Dual MIT/GPL");
 int kinematicsJacobian(const double *joint, const EmcPose *world,
     double jac[EMCMOT_MAX_JOINTS][EMCMOT_MAX_AXIS], const KINEMATICS_INVERSE_FLAGS *iflags);
 
-/* The rates of the joints by those of the pose, in front of them the matrix that is solved. */
-static bool rates_of(const double *joint, const double *words, double *system) {
-  double rows[SOFTKIN_MOST_ROWS*LETTERS], turns[3][3];
-  const softkin_frame there = frame_at(words);
-  char *const moved = (char *)THIS.machine + KIND->machine_size;
-  double *line = system, *letters = system + JOINTS;
-  if (softkin_jacobian_near(KIND, THIS.machine, joint, &there, moved, rows) != SOFTKIN_OK) {
-    return false;
-  }
-  softkin_turns_by_angles(&words[A_WORD], turns);
-  for (int row = 0; row < KIND->row_count; row += 1) {
-    const int coordinate = coordinate_of(row);
-    if (coordinate < 0 && THIS.angles == 0) {
-      continue;
-    }
-    for (int i = 0; i < JOINTS; i += 1) {
-      line[i] = rows[row*JOINTS + i]*softkin_unit_of(KIND, i);
-    }
-    if (coordinate >= 0) {
-      letters[coordinate] = 1.0;
-    }
-    for (int i = 3 - THIS.angles; coordinate < 0 && i < 3; i += 1) {
-      letters[A_WORD + i] = turns[KIND->rows[row][5] - 'x'][i]*SOFTKIN_DEGREE; /* "turn x" */
-    }
-    line += JOINTS + LETTERS;
-    letters += JOINTS + LETTERS;
-  }
-  for (int i = 0; i < JOINTS; i += 1) {
-    if (THIS.own_letters[i] >= 0) {
-      line[i] = 1.0;
-      letters[THIS.own_letters[i]] = 1.0;
-      line += JOINTS + LETTERS;
-      letters += JOINTS + LETTERS;
-    }
-  }
-  return softkin_solve(system, JOINTS, LETTERS) != 0.0;
-}
-
 /* jac[j][a]: the rate of joint j by a unit rate of letter a, in their own units. */
 int kinematicsJacobian(const double *joint, const EmcPose *world,
     double jac[EMCMOT_MAX_JOINTS][EMCMOT_MAX_AXIS], const KINEMATICS_INVERSE_FLAGS *iflags) {
@@ -497,9 +474,8 @@ int kinematicsJacobian(const double *joint, const EmcPose *world,
   }
   for (int i = 0; i < EMCMOT_MAX_JOINTS; i += 1) {
     for (int j = 0; j < EMCMOT_MAX_AXIS; j += 1) {
-      const bool is_same = kinematics_type == 1 && i < JOINTS && j == THIS.joint_letters[i];
-      const bool is_found = kinematics_type == 0 && i < JOINTS;
-      jac[i][j] = is_found ? system[i*(JOINTS + LETTERS) + JOINTS + j] : is_same ? 1.0 : 0.0;
+      const double same = i < JOINTS && j == THIS.joint_letters[i] ? 1.0 : 0.0;
+      jac[i][j] = kinematics_type == 1 || i >= JOINTS ? same : system[i*(JOINTS + LETTERS) + JOINTS + j];
     }
   }
   return 0;
