@@ -121,6 +121,7 @@ def _method(signature: Signature, template: str, contract: Contract, templates: 
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,
+        parameters=[p.name for p in signature.parameters],
         returns=signature.returns,
         projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )
