@@ -87,13 +87,13 @@ def markdown(text: str) -> str:
     return re.sub(r"[\\*`|<\[\]&~$]|_(?!\w)|(?<!\w)_", r"\\\g<0>", text)
 
 
-def environment(language: str) -> Environment:
+def environment(language: str, *, is_page: bool = False) -> Environment:
     """The templates of a language. An unknown name in a template is an error, never an empty text."""
-    # Nothing is escaped by itself: the output is source text. Each language has functions for texts and comments.
+    # What is no page of HTML is source text, where each language has functions for texts and comments.
     found = Environment(
         loader=FileSystemLoader(TEMPLATES / language),
         undefined=StrictUndefined,
-        autoescape=False,
+        autoescape=is_page,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,

@@ -85,7 +85,24 @@ def matrix_of(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:
     return matrix.xreplace(table)
 
 
-def named_entries(entries: sp.Matrix, word: str, lets: list[Let]) -> sp.Matrix:
+def between_known(problem: Problem, *, moves_last: bool) -> tuple[list[Factor], sp.Matrix, list[Let]]:
+    """The rotations from the first unknown one to the last, the commanded rotation that they must make, and the values
+    in it. moves_last: whether the known ones behind the last are moved, too. One of them must be unknown.
+    """
+    turns, entries, lets = list(problem.turns), sp.Matrix(3, 3, list(problem.rotation)), list[Let]()
+    front, back = Side("from", "base"), Side("before", "flange")
+    while not is_unknown(problem, turns[0]):
+        turn = turns.pop(0)
+        front = front.behind(joints_of(problem, turn), turn)
+        entries = _named_entries(matrix_of(problem, turn, lets).T * entries, front.suffix, lets)
+    while moves_last and not is_unknown(problem, turns[-1]):
+        turn = turns.pop()
+        back = back.behind(joints_of(problem, turn), turn)
+        entries = _named_entries(entries * matrix_of(problem, turn, lets).T, front.suffix + back.suffix, lets)
+    return turns, entries, lets
+
+
+def _named_entries(entries: sp.Matrix, word: str, lets: list[Let]) -> sp.Matrix:
     """The entries of a rotation; an entry that is more than a name gets a name."""
     return sp.Matrix(3, 3, lambda i, j: _named(entries[i, j], f"r{i + 1}{j + 1}{word}", lets))
 

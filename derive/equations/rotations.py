@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial, reduce_units
-from derive.equations.known_turns import Side, is_unknown, joints_of, matrix_of, named_entries, needed
+from derive.equations.known_turns import between_known, is_unknown, needed
 from derive.equations.pitch.equations import followed_entries
 from derive.equations.problem import Column, Equation, Problem
 from derive.geometry.frames import Chain, Factor
@@ -39,18 +39,7 @@ def conditions(problem: Problem) -> tuple[Equation, ...]:
 def _entries(problem: Problem) -> tuple[Equation, ...]:
     if not problem.turns or not any(is_unknown(problem, t) for t in problem.turns):
         return ()
-    turns = list(problem.turns)
-    lets: list[Let] = []
-    entries = sp.Matrix(3, 3, list(problem.rotation))
-    front, back = Side("from", "base"), Side("before", "flange")
-    while not is_unknown(problem, turns[0]):
-        turn = turns.pop(0)
-        front = front.behind(joints_of(problem, turn), turn)
-        entries = named_entries(matrix_of(problem, turn, lets).T * entries, front.suffix, lets)
-    while len(problem.columns) == 3 and not is_unknown(problem, turns[-1]):
-        turn = turns.pop()
-        back = back.behind(joints_of(problem, turn), turn)
-        entries = named_entries(entries * matrix_of(problem, turn, lets).T, front.suffix + back.suffix, lets)
+    turns, entries, lets = between_known(problem, moves_last=len(problem.columns) == 3)
     return _entry_equations(problem, turns, entries, tuple(lets))
 
 

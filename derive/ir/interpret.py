@@ -14,17 +14,14 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.ir.constants import DEGREE, PIVOT, SOLVABLE
-from derive.ir.primitives import VALUES
+from derive.ir.constants import DEGREE
+from derive.ir.primitives import VALUES, solve
 from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import Flag, is_count, is_decided
 from derive.kept import kept_by_identity
 from derive.work import spend_steps
 
 Array = NDArray[np.float64]
-_PIVOT, _SOLVABLE = float(PIVOT), float(SOLVABLE)
-_FEW = 8
-"""Up to this many systems of equations are solved one by one, which is faster than with arrays."""
 
 
 @dataclass
@@ -258,68 +255,3 @@ def _table(entries: Sequence[_Evaluator], known: _State, rows: int, shape: tuple
     for place, entry in enumerate(entries):
         found[place] = entry(known)
     return found.reshape(rows, len(entries) // rows, *shape)
-
-
-def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable:
-    zeros.
-    """
-    if 0 < matrix[0, 0].size <= _FEW:
-        return _solved_one_by_one(matrix, right)
-    matrix, right, size = matrix.copy(), right.copy(), len(matrix)
-    largest, most = np.max(np.abs(matrix), axis=(0, 1)), _SOLVABLE
-    tiny = _PIVOT * largest
-    regular = (largest >= 1.0 / most) & (largest <= most) & np.all(np.abs(right) <= most, axis=(0, 1))
-    determinant = np.ones(matrix.shape[2:])
-    for k in range(size):
-        best = k + np.argmax(np.abs(matrix[k:, k]), axis=0)
-        for table in (matrix, right) if np.any(best != k) else ():
-            table[k], lifted = np.take_along_axis(table, best[None, None], axis=0)[0], table[k].copy()
-            np.put_along_axis(table, np.broadcast_to(best[None, None], (1, *lifted.shape)), lifted[None], axis=0)
-        determinant = np.where(best == k, determinant, -determinant) * matrix[k, k]
-        regular &= np.abs(matrix[k, k]) > tiny
-        matrix[k, k] = 1.0 / np.where(regular, matrix[k, k], 1.0)
-        for i in range(k + 1, size):
-            factor = matrix[i, k] * matrix[k, k]
-            matrix[i, k + 1 :] -= factor * matrix[k, k + 1 :]
-            right[i] -= factor * right[k]
-    for k in reversed(range(size)):
-        for i in range(k + 1, size):
-            right[k] -= matrix[k, i] * right[i]
-        right[k] *= matrix[k, k]
-    return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)
-
-
-def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """`solve` with Python's own numbers, which round like those of arrays."""
-    size, columns, *shape = right.shape
-    count = matrix[0, 0].size
-    systems = np.concatenate([matrix, right], axis=1).reshape(size, size + columns, count)
-    answers = [_solved(systems[:, :, k].tolist(), size) for k in range(count)]
-    solution = np.array([rows for _, rows in answers]).reshape(count, size, columns)
-    return np.array([d for d, _ in answers]).reshape(shape), np.moveaxis(solution, 0, -1).reshape(right.shape)
-
-
-def _solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
-    """Determinant and solution of one system; every row ends in its right-hand sides."""
-    nothing, most = (0.0, [[0.0] * len(row[size:]) for row in rows]), _SOLVABLE
-    largest, determinant = max(abs(v) for row in rows for v in row[:size]), 1.0
-    if largest < 1.0 / most or not all(abs(v) <= most for row in rows for v in row):  # also false for NaN
-        return nothing
-    for k in range(size):
-        best = max(range(k, size), key=lambda i: abs(rows[i][k]))
-        if best != k:
-            rows[k], rows[best], determinant = rows[best], rows[k], -determinant
-        top, pivot = rows[k], rows[k][k]
-        determinant *= pivot
-        if not abs(pivot) > _PIVOT * largest:
-            return nothing
-        top[k] = 1.0 / pivot
-        for row in rows[k + 1 :]:
-            factor = row[k] * top[k]
-            row[k + 1 :] = [v - factor * t for v, t in zip(row[k + 1 :], top[k + 1 :], strict=True)]
-    for k in reversed(range(size)):
-        for i in range(k + 1, size):
-            rows[k][size:] = [v - rows[k][i] * t for v, t in zip(rows[k][size:], rows[i][size:], strict=True)]
-        rows[k][size:] = [v * rows[k][k] for v in rows[k][size:]]
-    return determinant, [row[size:] for row in rows]

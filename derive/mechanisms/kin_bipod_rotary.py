@@ -1,54 +1,16 @@
-"""Kin_Bipod_Rotary: two arms and a plate in the X-Y plane."""
+"""Kin_Bipod_Rotary: two arms and a plate in the X-Y plane, the machine of Kin_P2C_Type1."""
 
-from sympy import cos, sin
+from dataclasses import replace
 
-from derive.mechanism import (
-    Constraint,
-    Mechanism,
-    Task,
-    Vendor,
-    X,
-    Y,
-    assembly,
-    branch,
-    length,
-    optional_length,
-    rod,
-    rotary,
-)
-from derive.vectors import cross, minus, vector
+from derive.mechanism import Vendor
+from derive.mechanisms.kin_p2c_type1 import MECHANISM as P2C_TYPE1
 
-L1 = length("inner_arm", "Length of the inner arms", nominal=250.0)
-L2 = length("outer_arm", "Length of the outer arms", nominal=500.0)
-BASE = optional_length("displacement", "Centre to the motor axes", nominal=120.0)
-PLATE = optional_length("tcp_displacement", "Centre of the plate to its rod joints", nominal=40.0)
-
-A1 = rotary("A1", "Arm on the side of -X, from horizontal outward; positive is down")
-A2 = rotary("A2", "Arm on the side of +X, from horizontal outward; positive is down")
-
-ARM_1 = vector(-L1 * cos(A1), -L1 * sin(A1))
-ARM_2 = vector(L1 * cos(A2), -L1 * sin(A2))
-KNEE_1 = vector(ARM_1[0] - BASE, ARM_1[1])
-KNEE_2 = vector(ARM_2[0] + BASE, ARM_2[1])
-JOINT_1, JOINT_2 = vector(X - PLATE, Y), vector(X + PLATE, Y)
-ROD_1, ROD_2 = minus(JOINT_1, KNEE_1), minus(JOINT_2, KNEE_2)
-
-MECHANISM = Mechanism(
+MECHANISM = replace(
+    P2C_TYPE1,
     name="Kin_Bipod_Rotary",
     vendor=Vendor.CODESYS,
-    family="parallel",
     source=(
         "CODESYS SM3_Transformation lists Kin_Bipod_Rotary without a geometry: as Kin_P2C_Type1, Softkin's definition"
     ),
     summary="Bipod: two arms carry a plate that keeps its orientation, in the X-Y plane.",
-    parameters=(L1, L2, BASE, PLATE),
-    joints=(A1, A2),
-    rods=(rod("1", KNEE_1, JOINT_1, L2), rod("2", KNEE_2, JOINT_2, L2)),
-    task=Task("xy"),
-    branches=(
-        branch("knee_1", cross(ARM_1, ROD_1), margin="stretched_1", outward=+1, inward=-1),
-        branch("knee_2", -cross(ARM_2, ROD_2), margin="stretched_2", outward=+1, inward=-1),
-    ),
-    assembly=assembly("tcp", cross(ROD_1, ROD_2), margin="arms_aligned", below=-1, above=+1),
-    constraints=(Constraint(abs(BASE - PLATE) < L1 + L2, "the arms must be able to reach the plate"),),
 )

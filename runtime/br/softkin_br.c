@@ -9,7 +9,6 @@
 #include "softkin_br.h"
 
 #define COORDINATES 15
-#define MOST_ROWS 6
 #define MOST_POINTS 64
 #define STILL 1e-9 /* of a tool, per its length */
 
@@ -75,24 +74,14 @@ static bool is_still(const robot *one, const softkin_frame *frame) {
   return one->turns > 0 || apart <= STILL*size;
 }
 
-static void rotate(double rotation[3][3], double a, double b, double c) {
-  const double sa = sin(a*SOFTKIN_DEGREE), ca = cos(a*SOFTKIN_DEGREE);
-  const double sb = sin(b*SOFTKIN_DEGREE), cb = cos(b*SOFTKIN_DEGREE);
-  const double sc = sin(c*SOFTKIN_DEGREE), cc = cos(c*SOFTKIN_DEGREE);
-  const double found[3][3] = {
-    {cc*cb, cc*sb*sa - sc*ca, cc*sb*ca + sc*sa}, {sc*cb, sc*sb*sa + cc*ca, sc*sb*ca - cc*sa}, {-sb, cb*sa, cb*ca},
-  };
-  memcpy(rotation, found, sizeof(found));
-}
-
 /* The frame of the flange at a position of the TCP. down: the flange points down, of a machine that turns about Z. */
 static softkin_status frame_of(const robot *one, const LREAL *tcp, bool down, softkin_frame *frame) {
   double arm[3];
   if (!softkin_are_reasonable(tcp, 3 + one->turns)) {
     return SOFTKIN_BAD_INPUT;
   }
-  rotate(frame->rotation, one->turns == 3 ? tcp[3] : down ? 180.0 : 0.0, one->turns == 3 ? tcp[4] : 0.0,
-      one->turns == 3 ? tcp[5] : one->turns == 1 ? tcp[3] : 0.0);
+  const double about_z[3] = {down ? 180.0 : 0.0, 0.0, one->turns == 1 ? tcp[3] : 0.0};
+  softkin_rotation_of_angles(one->turns == 3 ? &tcp[3] : about_z, frame->rotation);
   carried(one, frame, arm);
   for (int i = 0; i < 3; i += 1) {
     frame->position[i] = tcp[i] - (one->turns > 0 ? arm[i] : one->tool[i]);
@@ -100,37 +89,13 @@ static softkin_status frame_of(const robot *one, const LREAL *tcp, bool down, so
   return SOFTKIN_OK;
 }
 
-/* Angles of a rotation, of two triples the one that is nearer to the reference. */
-static void angles_of(const softkin_frame *frame, const LREAL *near, LREAL *angles) {
-  const double(*r)[3] = frame->rotation;
-  const double flat = hypot(r[0][0], r[1][0]);
-  const double first = flat > 1e-12 ? atan2(r[1][0], r[0][0])*SOFTKIN_RADIAN : near[2];
-  double found[2][3], distance[2] = {0.0, 0.0};
-  for (int k = 0; k < 2; k += 1) {
-    const double c = first + 180.0*k, sc = sin(c*SOFTKIN_DEGREE), cc = cos(c*SOFTKIN_DEGREE);
-    found[k][0] = atan2(sc*r[0][2] - cc*r[1][2], cc*r[1][1] - sc*r[0][1])*SOFTKIN_RADIAN;
-    found[k][1] = atan2(-r[2][0], cc*r[0][0] + sc*r[1][0])*SOFTKIN_RADIAN;
-    found[k][2] = c;
-    for (int i = 0; i < 3; i += 1) {
-      found[k][i] = softkin_nearest_period(found[k][i], near[i]);
-      distance[k] += (found[k][i] - near[i])*(found[k][i] - near[i]);
-    }
-  }
-  memcpy(angles, found[distance[1] < distance[0]], sizeof(found[0]));
-}
-
-static softkin_status forward(const robot *one, const LREAL *joints, const LREAL *near, softkin_frame *frame) {
-  softkin_frame start;
-  if (one->kind->forward_from != NULL && frame_of(one, near, false, &start) == SOFTKIN_OK
-      && softkin_forward(one->kind, one->machine, joints, &start, frame, NULL, NULL, NULL) == SOFTKIN_OK) {
-    return SOFTKIN_OK;
-  }
-  return softkin_forward(one->kind, one->machine, joints, NULL, frame, NULL, NULL, NULL);
-}
-
 static unsigned direct(const robot *one, const LREAL *joints, const LREAL *near, softkin_frame *frame, LREAL *tcp) {
   double arm[3];
-  const softkin_status status = softkin_are_reasonable(near, 3 + one->turns) ? forward(one, joints, near, frame) : SOFTKIN_BAD_INPUT;
+  softkin_frame start;
+  softkin_status status = frame_of(one, near, false, &start);
+  if (status == SOFTKIN_OK) {
+    status = softkin_forward_near(one->kind, one->machine, joints, &start, frame, NULL);
+  }
   if (status != SOFTKIN_OK) {
     return status;
   }
@@ -146,7 +111,7 @@ static unsigned direct(const robot *one, const LREAL *joints, const LREAL *near,
   if (one->turns == 1) {
     tcp[3] = softkin_nearest_period(atan2(frame->rotation[1][0], frame->rotation[0][0])*SOFTKIN_RADIAN, near[3]);
   } else if (one->turns == 3) {
-    angles_of(frame, &near[3], &tcp[3]);
+    softkin_angles_of_rotation(frame, &near[3], &tcp[3]);
   }
   return SOFTKIN_OK;
 }
@@ -173,31 +138,6 @@ static unsigned inverse(const robot *one, const LREAL *tcp, const LREAL *near, s
   }
   memcpy(joints, found, sizeof(found));
   return SOFTKIN_OK;
-}
-
-/* The Jacobian at joints whose frame is known. */
-static softkin_status jacobian(const robot *one, const LREAL *joints, const softkin_frame *frame, double *rows) {
-  const void *machine = one->machine;
-  if (one->kind->start_at != NULL) {
-    const softkin_status status = softkin_start_at(one->kind, machine, frame, one->moved, NULL);
-    if (status != SOFTKIN_OK) {
-      return status;
-    }
-    machine = one->moved;
-  }
-  return softkin_jacobian(one->kind, machine, joints, rows, NULL);
-}
-
-static double unit_of(const robot *one, int axis) {
-  return strcmp(one->kind->axes[axis].unit, "deg") == 0 ? SOFTKIN_DEGREE : 1.0;
-}
-
-/* The turns of the flange (columns) for those of A, B and C. */
-static void turns_by_angles(const LREAL *angles, double by[3][3]) {
-  const double sb = sin(angles[1]*SOFTKIN_DEGREE), cb = cos(angles[1]*SOFTKIN_DEGREE);
-  const double sc = sin(angles[2]*SOFTKIN_DEGREE), cc = cos(angles[2]*SOFTKIN_DEGREE);
-  const double found[3][3] = {{cb*cc, -sc, 0.0}, {cb*sc, cc, 0.0}, {-sb, 0.0, 1.0}};
-  memcpy(by, found, sizeof(found));
 }
 
 static void cross(const double *w, const double *arm, double *found) {
@@ -233,14 +173,14 @@ McPathGenCusMechStatusEnum softkin_br_direct_derivative(
   robot one;
   softkin_frame frame;
   LREAL tcp[COORDINATES], rates[COORDINATES] = {0.0};
-  double rows[MOST_ROWS*SOFTKIN_MOST_AXES], twist[6] = {0.0}, arm[3], swept[3];
+  double rows[SOFTKIN_MOST_ROWS*SOFTKIN_MOST_AXES], twist[6] = {0.0}, arm[3], swept[3];
   unsigned status = begin(&one, kind, machine, call->Parameter.MechDimensionsAddr, &call->Parameter.Tool);
   if (status == SOFTKIN_OK) {
     status = direct(&one, call->Input.JointPos, call->Input.TcpRefPos, &frame, tcp);
   }
   if (status == SOFTKIN_OK) {
     status = softkin_are_reasonable(call->Input.JointDer, kind->axis_count)
-        ? jacobian(&one, call->Input.JointPos, &frame, rows) : SOFTKIN_BAD_INPUT;
+        ? softkin_jacobian_near(kind, machine, call->Input.JointPos, &frame, one.moved, rows) : SOFTKIN_BAD_INPUT;
   }
   if (status != SOFTKIN_OK) {
     return answer(status, &call->Info.Status.Code);
@@ -248,7 +188,7 @@ McPathGenCusMechStatusEnum softkin_br_direct_derivative(
   for (int i = 0; i < kind->row_count; i += 1) {
     double *sum = &twist[axis_of(kind->rows[i]) + (kind->rows[i][1] != '\0' ? 3 : 0)];
     for (int j = 0; j < kind->axis_count; j += 1) {
-      *sum += rows[i*kind->axis_count + j]*call->Input.JointDer[j]*unit_of(&one, j);
+      *sum += rows[i*kind->axis_count + j]*call->Input.JointDer[j]*softkin_unit_of(kind, j);
     }
   }
   carried(&one, &frame, arm);
@@ -261,7 +201,7 @@ McPathGenCusMechStatusEnum softkin_br_direct_derivative(
     rates[3] = twist[5]*SOFTKIN_RADIAN;
   } else if (one.turns == 3) {
     double by[3][3], system[12];
-    turns_by_angles(&tcp[3], by);
+    softkin_turns_by_angles(&tcp[3], by);
     for (int i = 0; i < 3; i += 1) {
       memcpy(&system[4*i], by[i], sizeof(by[i]));
       system[4*i + 3] = twist[3 + i]*SOFTKIN_RADIAN;
@@ -283,14 +223,15 @@ McPathGenCusMechStatusEnum softkin_br_inverse_derivative(
   softkin_frame frame;
   LREAL joints[COORDINATES], rates[COORDINATES] = {0.0};
   const LREAL *der = call->Input.TcpDer;
-  double rows[MOST_ROWS*SOFTKIN_MOST_AXES], system[MOST_ROWS*(MOST_ROWS + 1)], turn[3] = {0.0}, arm[3], swept[3];
+  double rows[SOFTKIN_MOST_ROWS*SOFTKIN_MOST_AXES], system[SOFTKIN_MOST_ROWS*(SOFTKIN_MOST_ROWS + 1)], turn[3] = {0.0}, arm[3], swept[3];
   const int n = kind->axis_count;
   unsigned status = begin(&one, kind, machine, call->Parameter.MechDimensionsAddr, &call->Parameter.Tool);
   if (status == SOFTKIN_OK) {
     status = inverse(&one, call->Input.TcpPos, call->Input.JointRefPos, &frame, joints);
   }
   if (status == SOFTKIN_OK) {
-    status = softkin_are_reasonable(der, 3 + one.turns) ? jacobian(&one, joints, &frame, rows) : SOFTKIN_BAD_INPUT;
+    status = softkin_are_reasonable(der, 3 + one.turns)
+        ? softkin_jacobian_near(kind, machine, joints, &frame, one.moved, rows) : SOFTKIN_BAD_INPUT;
   }
   if (status != SOFTKIN_OK) {
     return answer(status, &call->Info.Status.Code);
@@ -299,7 +240,7 @@ McPathGenCusMechStatusEnum softkin_br_inverse_derivative(
     turn[2] = der[3]*SOFTKIN_DEGREE;
   } else if (one.turns == 3) {
     double by[3][3];
-    turns_by_angles(&call->Input.TcpPos[3], by);
+    softkin_turns_by_angles(&call->Input.TcpPos[3], by);
     for (int i = 0; i < 3; i += 1) {
       turn[i] = (by[i][0]*der[3] + by[i][1]*der[4] + by[i][2]*der[5])*SOFTKIN_DEGREE;
     }
@@ -309,7 +250,7 @@ McPathGenCusMechStatusEnum softkin_br_inverse_derivative(
   for (int i = 0; i < n; i += 1) {
     const int place = axis_of(kind->rows[i]);
     for (int j = 0; j < n; j += 1) {
-      system[i*(n + 1) + j] = rows[i*n + j]*unit_of(&one, j);
+      system[i*(n + 1) + j] = rows[i*n + j]*softkin_unit_of(kind, j);
     }
     system[i*(n + 1) + n] = kind->rows[i][1] != '\0' ? turn[place] : der[place] - swept[place];
   }

@@ -122,6 +122,15 @@ static void untouched(const double *values, int count) {
   }
 }
 
+/* The status, and the results of a call; where it refuses, it must have written none. */
+static void tell_results(softkin_status status, const softkin_refusal *why, const double *values, int count) {
+  if (succeeds(status, why)) {
+    tell_all(values, count);
+  } else {
+    untouched(values, count);
+  }
+}
+
 static void forward(const void *machine) {
   const int size = tested->branch_count + tested->period_count;
   double *axes = numbers(tested->axis_count), *margins = empty(tested->branch_count);
@@ -193,11 +202,7 @@ static void jacobian(const void *machine) {
     status = softkin_jacobian(tested, moved, axes, rows, &why);
   }
   free(moved);
-  if (succeeds(status, &why)) {
-    tell_all(rows, size);
-  } else {
-    untouched(rows, size);
-  }
+  tell_results(status, &why, rows, size);
   free(axes);
   free(rows);
 }
@@ -215,11 +220,7 @@ static void motion(const void *machine, bool has_velocities) {
         : softkin_axis_velocities(tested, moved, axes, given, found, &why);
   }
   free(moved);
-  if (succeeds(status, &why)) {
-    tell_all(found, tested->axis_count);
-  } else {
-    untouched(found, tested->axis_count);
-  }
+  tell_results(status, &why, found, tested->axis_count);
   free(axes);
   free(velocities);
   free(given);
@@ -252,11 +253,8 @@ static void inverse(const void *machine) {
   frame_of(&frame);
   int8_t *configuration = number() != 0.0 ? bytes(size) : NULL;
   double *reference = optional(tested->axis_count), *axes = empty(tested->axis_count);
-  if (succeeds(softkin_inverse(tested, machine, &frame, configuration, reference, axes, &why), &why)) {
-    tell_all(axes, tested->axis_count);
-  } else {
-    untouched(axes, tested->axis_count);
-  }
+  const softkin_status status = softkin_inverse(tested, machine, &frame, configuration, reference, axes, &why);
+  tell_results(status, &why, axes, tested->axis_count);
   free(configuration);
   free(reference);
   free(axes);
@@ -277,11 +275,7 @@ static void inverse_all(const void *machine) {
                                                     whys, &others);
   tell((double)status);
   for (int i = 0; status == SOFTKIN_OK && i < slots; i += 1) {
-    if (succeeds(statuses[i], &whys[i])) {
-      tell_all(&found[i*axes], axes);
-    } else {
-      untouched(&found[i*axes], axes);
-    }
+    tell_results(statuses[i], &whys[i], &found[i*axes], axes);
     tell_bytes(&configurations[i*size], size);
   }
   tell(others.count);

@@ -20,50 +20,47 @@ def changed(text: str, *changes: Change) -> str:
     return text
 
 
+def arm(old: str, new: str) -> str:
+    """The arm with one part replaced."""
+    return changed(ARM, (old, new))
+
+
 def with_parameter(name: str) -> str:
     """The arm, with another name for its first length."""
-    return changed(ARM, ('"link_length_1"', repr(name)))
+    return arm('"link_length_1"', repr(name))
 
 
 WRONG: dict[str, str] = {
-    "SyntaxError: …": changed(ARM, ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((")),
-    "NameError: name '…' is not defined; define it above this line": changed(ARM, ("Rz(A2)", "Rz(A3)")),
-    "…Error: …; did you mean '…'?": changed(ARM, ("Rz(A2)", "Rz(a2)")),
-    "… of the chain shifts by …, which is no length": changed(ARM, ("Tx(L1)", "Tx(L1**2)")),
-    "ImportError: cannot import name …; joints and lengths are in derive.mechanism": changed(
-        ARM, ("rotary\n", "knee\n")
+    "SyntaxError: …": arm("MECHANISM = Mechanism(", "MECHANISM = Mechanism(("),
+    "NameError: name '…' is not defined; define it above this line": arm("Rz(A2)", "Rz(A3)"),
+    "…Error: …; did you mean '…'?": arm("Rz(A2)", "Rz(a2)"),
+    "… of the chain shifts by …, which is no length": arm("Tx(L1)", "Tx(L1**2)"),
+    "ImportError: cannot import name …; joints and lengths are in derive.mechanism": arm("rotary\n", "knee\n"),
+    "TypeError: … got an unexpected keyword argument '…'; did you mean '…'?": arm("chain=", "chian="),
+    "TypeError: … missing 1 required positional argument: '…'; state what is missing": arm(
+        '    task=Task("xy"),\n', ""
     ),
-    "TypeError: … got an unexpected keyword argument '…'; did you mean '…'?": changed(ARM, ("chain=", "chian=")),
-    "TypeError: … missing 1 required positional argument: '…'; state what is missing": changed(
-        ARM, ('    task=Task("xy"),\n', "")
-    ),
-    "defines no MECHANISM; assign the description": changed(ARM, ("MECHANISM =", "ARM =")),
+    "defines no MECHANISM; assign the description": arm("MECHANISM =", "ARM ="),
     "the description ends the program; let the file define MECHANISM": ARM + "\nexit()\n",
-    "branch '…' needs two names with the signs +1 and -1": changed(ARM, ("right=-1", "right=+1")),
-    "… must be a tuple, not a …: a comma makes the tuple": changed(ARM, ("held=(E1,)", "held=(E1)")),
-    "… must not be …: as in …": changed(ARM, ('Task("xy")', '"xy"')),
-    "… must not hold …: as in …": changed(ARM, ("joints=(E1, A1, A2)", 'joints=("E1", "A1", "A2")')),
+    "branch '…' needs two names with the signs +1 and -1": arm("right=-1", "right=+1"),
+    "… must be a tuple, not a …: a comma makes the tuple": arm("held=(E1,)", "held=(E1)"),
+    "… must not be …: as in …": arm('Task("xy")', '"xy"'),
+    "… must not hold …: as in …": arm("joints=(E1, A1, A2)", 'joints=("E1", "A1", "A2")'),
     "task: '…' is no Turning": changed(MILL, ("Turning.DIRECTION),", '"direction"),')),
-    "TypeError: …; take sin, cos and sqrt from sympy": changed(ARM, ("from sympy", "from math")),
-    "TypeError: …; a chain is a product": changed(ARM, ("Tx(L1) * Rz", "Tx(L1) + Rz")),
-    "TypeError: length() missing 1 required …; as in length(": changed(ARM, (", nominal=400.0", "")),
-    "parameter '…': '…' is not a number": changed(ARM, ("nominal=400.0", 'nominal="400"')),
-    "…: its text holds …, a line break or a character that is not printed": changed(
-        ARM, ("Axis A1 to axis A2", "A1 to\\nA2")
-    ),
-    "branch '…': '…' cannot name it, a side or the margin of it: lower-case words": changed(
-        ARM, ('"elbow"', '"my elbow"')
-    ),
+    "TypeError: …; take sin, cos and sqrt from sympy": arm("from sympy", "from math"),
+    "TypeError: …; a chain is a product": arm("Tx(L1) * Rz", "Tx(L1) + Rz"),
+    "TypeError: length() missing 1 required …; as in length(": arm(", nominal=400.0", ""),
+    "parameter '…': '…' is not a number": arm("nominal=400.0", 'nominal="400"'),
+    "…: its text holds …, a line break or a character that is not printed": arm("Axis A1 to axis A2", "A1 to\\nA2"),
+    "branch '…': '…' cannot name it, a side or the margin of it: lower-case words": arm('"elbow"', '"my elbow"'),
     "rod '…': its ends have 2 and 3 coordinates": changed(
         FIVE_BAR, ('rod("1", KNEE_1, TOOL, ROD_1)', 'rod("1", KNEE_1, (X, Y, 0), ROD_1)')
     ),
-    "… is taken by …: choose another name": changed(ARM, ('"ArmOnTrack"', '"Softkin_Root"')),
-    "… declares …, which is a word of IEC 61131-3": changed(ARM, ('"ArmOnTrack"', '"Array"')),
-    "'…' cannot name a function block; take letters, digits and single _": changed(
-        ARM, ('"ArmOnTrack"', '"Arm on track"')
-    ),
-    "'…' cannot name a family": changed(ARM, ('"ArmOnTrack",', '"ArmOnTrack", family="my machines",')),
-    "'…' cannot name a joint: a capital letter, then letters and digits": changed(ARM, ('rotary("A1"', 'rotary("a_1"')),
+    "… is taken by …: choose another name": arm('"ArmOnTrack"', '"Softkin_Root"'),
+    "… declares …, which is a word of IEC 61131-3": arm('"ArmOnTrack"', '"Array"'),
+    "'…' cannot name a function block; take letters, digits and single _": arm('"ArmOnTrack"', '"Arm on track"'),
+    "'…' cannot name a family": arm('"ArmOnTrack",', '"ArmOnTrack", family="my machines",'),
+    "'…' cannot name a joint: a capital letter, then letters and digits": arm('rotary("A1"', 'rotary("a_1"'),
     "'…' cannot name a parameter: letters, digits and _": with_parameter("link length"),
     "joint '…' and parameter '…' differ in case alone: equations would read them as one": changed(
         ARM, ('length("link_length_1"', 'distance("a1"'), ("import Mechanism,", "import distance, Mechanism,")
@@ -71,35 +68,31 @@ WRONG: dict[str, str] = {
     "parameter '…' and parameter '…' differ in case alone: Structured Text reads them as one name": with_parameter(
         "LINK_length_2"
     ),
-    "joint '…' is given 2 times; give each thing a name of its own": changed(ARM, ('rotary("A2"', 'rotary("A1"')),
-    "parameter '…': its nominal value … is outside its range …": changed(ARM, ("nominal=400.0", "nominal=0.0")),
-    "joint '…': its limit_range … is empty; state the lower end first": changed(
-        ARM, ('"Link 1 about Z, from +X"', '"Link 1", limit_range=(90.0, -90.0)')
+    "joint '…' is given 2 times; give each thing a name of its own": arm('rotary("A2"', 'rotary("A1"'),
+    "parameter '…': its nominal value … is outside its range …": arm("nominal=400.0", "nominal=0.0"),
+    "joint '…': its limit_range … is empty; state the lower end first": arm(
+        '"Link 1 about Z, from +X"', '"Link 1", limit_range=(90.0, -90.0)'
     ),
-    "joint '…': its … is …, and not two numbers: as in": changed(
-        ARM, ('"Link 1 about Z, from +X"', '"Link 1", limits=90.0')
+    "joint '…': its … is …, and not two numbers: as in": arm('"Link 1 about Z, from +X"', '"Link 1", limits=90.0'),
+    "joint '…' carries a pitch: it needs a limit_range": arm('"Link 2 about Z, from link 1"', '"2", pitch=L1'),
+    "coupling of joint '…' reads '…', which is not the motor of an earlier joint": arm(
+        '"Link 2 about Z, from link 1"', '"2", coupling=rotary("A3", "later").motor'
     ),
-    "joint '…' carries a pitch: it needs a limit_range": changed(
-        ARM, ('"Link 2 about Z, from link 1"', '"2", pitch=L1')
+    "chain reads '…', which is not a joint or a parameter of this mechanism; list it": arm(
+        "parameters=(L1, L2)", "parameters=(L1,)"
     ),
-    "coupling of joint '…' reads '…', which is not the motor of an earlier joint": changed(
-        ARM, ('"Link 2 about Z, from link 1"', '"2", coupling=rotary("A3", "later").motor')
-    ),
-    "chain reads '…', which is not a joint or a parameter of this mechanism; list it": changed(
-        ARM, ("parameters=(L1, L2)", "parameters=(L1,)")
-    ),
-    "joint '…' occurs nowhere in the closure; use it": changed(ARM, ("chain=Tx(E1) * ", "chain=")),
-    "periods names '…', which is no multi-turn joint of this mechanism; leave out periods=": changed(
-        ARM, ("held=(E1,),", 'held=(E1,), periods=("E1", "A1", "A2"),')
+    "joint '…' occurs nowhere in the closure; use it": arm("chain=Tx(E1) * ", "chain="),
+    "periods names '…', which is no multi-turn joint of this mechanism; leave out periods=": arm(
+        "held=(E1,),", 'held=(E1,), periods=("E1", "A1", "A2"),'
     ),
     "the nominal parameters break the constraint '…'; choose nominal values": changed(
         FIVE_BAR, ("BASE < ARM_1", "BASE > ARM_1")
     ),
-    "one joint too many: the task commands …": changed(ARM, ("    held=(E1,),\n", "")),
+    "one joint too many: the task commands …": arm("    held=(E1,),\n", ""),
     "the task commands …, and there are only … joints; command less of the pose, or add joints": changed(
         SCARA, ("Turning.ABOUT_Z),", "Turning.FULL),")
     ),
-    "held names '…', which is no joint of this mechanism": changed(ARM, ("joints=(E1, A1", "joints=(A1")),
+    "held names '…', which is no joint of this mechanism": arm("joints=(E1, A1", "joints=(A1"),
     "held joints need a chain: of a closed loop every joint follows from the pose": changed(
         FIVE_BAR, ("joints=(A1, A2),", "joints=(A1, A2), held=(A1,),")
     ),
@@ -109,9 +102,7 @@ WRONG: dict[str, str] = {
     "the mechanism needs either a chain or closure equations; state chain=": changed(
         RAIL, ("chain=Tx(A1) * Ty(A2), ", "")
     ),
-    "the task commands '…': it must be coordinates in the order x, y, z, or ''": changed(
-        ARM, ('Task("xy")', 'Task("zx")')
-    ),
+    "the task commands '…': it must be coordinates in the order x, y, z, or ''": arm('Task("xy")', 'Task("zx")'),
     "… is not commanded but the joints move it; command it too": changed(
         SCARA,
         ('Task("xyz", Turning', 'Task("xy", Turning'),
@@ -138,7 +129,7 @@ WRONG: dict[str, str] = {
     "with offset_interface=False it could be built, but for a point off the flange …": changed(
         MILL, ("    task=", "    offset_interface=True,\n    task=")
     ),
-    "branch '…': its indicator agrees with 0 steps, not one: …softkin explain…": changed(ARM, ("sin(A2)", "sin(A1)")),
+    "branch '…': its indicator agrees with 0 steps, not one: …softkin explain…": arm("sin(A2)", "sin(A1)"),
     "branches '…' and '…' name the same two solutions; leave one of them out": changed(
         ARM, (f"branches=({ELBOW},)", f'branches=({ELBOW}, branch("bend", -sin(A2), inward=+1, outward=-1))')
     ),
@@ -150,8 +141,8 @@ WRONG: dict[str, str] = {
     "assembly '…': its indicator does not tell the two solutions apart": changed(
         FIVE_BAR, ("cross(BAR_1, BAR_2), margin", "cross(REACH_1, REACH_2), margin")
     ),
-    "… must be positive, and is at most …: check the nominal values of parameters": changed(
-        ARM, ("held=(E1,),", "held=(E1,), positive=(sin(A2) - 2,),")
+    "… must be positive, and is at most …: check the nominal values of parameters": arm(
+        "held=(E1,),", "held=(E1,), positive=(sin(A2) - 2,),"
     ),
     "a loop that turns its platform needs offset_interface=False": changed(
         PLATFORM, ("    task=", "    offset_interface=True,\n    task=")

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from derive.emit.c import package as c
+from derive.emit.language import runtime
 from derive.emit.linuxcnc import package
 from derive.emit.linuxcnc.words import LETTERS, Orientation, words_of
 from derive.pipeline import Built, languages, unwritten
@@ -14,6 +16,7 @@ from tests.linuxcnc.machine import NAMES
 from tests.linuxcnc.module import STRICT, STUBS, compiled, includes, loaded, part_of, run
 from tests.machines.odd_names import ODD
 from tests.mechanisms import kinematics_of, named
+from tests.outside import written
 
 ROOT = Path(__file__).parents[2]
 HEADERS = {
@@ -53,6 +56,13 @@ def test_no_warnings(name: str, tmp_path: Path) -> None:
     for path, text in part_of(name)["files"].items():
         (tmp_path / path).write_text(text)
         run(tmp_path, "-std=c99", *STRICT, *includes("master"), "-fsyntax-only", path)
+
+
+@pytest.mark.parametrize("stub", STUBS)
+def test_the_runtime_compiles_alone(stub: str, tmp_path: Path) -> None:
+    """Where it stands: no warning, and no name that a module would have to bring beside its `softkin_this`."""
+    folder = written({**c.shared(), **runtime("linuxcnc")}, tmp_path)
+    run(folder, "-std=c99", *STRICT, *includes(stub), "-fsyntax-only", "softkin_linuxcnc.c")
 
 
 @pytest.mark.slow

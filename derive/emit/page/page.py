@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cache
 
 import sympy as sp
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 
 from derive.description.mechanism import Mechanism
-from derive.emit.language import TEMPLATES
+from derive.emit.language import environment
 from derive.emit.page import tables
 from derive.emit.page.jacobian import factored, jacobian_of, matrices_of
 from derive.emit.page.lines import Line, Lines, steps_by_name
@@ -132,14 +132,7 @@ def index_of(pages: Sequence[Page]) -> str:
 
 @cache
 def _templates() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(TEMPLATES / _FOLDER),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    return environment(_FOLDER, is_page=True)
 
 
 def _numbered(derived: Derived) -> Mapping[str, int]:

@@ -12,8 +12,13 @@ from derive.emit.st.contract import Contract, Signature
 from derive.emit.st.layout import tidy, with_gathered
 from derive.emit.st.rotation import about_z, followed
 
-_OF_AXES = ("Jacobian", "Margins", "AxisVelocities", "AxisAccelerations")
-_OWN = ("InitializeReason", *_OF_AXES, *(f"{name}From" for name in _OF_AXES), "Diagnose")
+_OF_AXES = {
+    "Jacobian": "Jacobian", "Margins": "Margins", "AxisVelocities": "AxisMotion", "AxisAccelerations": "AxisMotion",
+}  # fmt: skip
+"""Methods at values of the axes, and their templates."""
+_FROM = {f"{name}From": template for name, template in _OF_AXES.items()}
+"""The same, from a pose nearby."""
+_OWN = ("InitializeReason", *_OF_AXES, *_FROM, "Diagnose")
 _OF_INTERFACES = (
     "Initialize",
     "AxesToCartesian",
@@ -109,13 +114,14 @@ def _signatures(contract: Contract) -> Iterator[Signature]:
 def _template(signature: Signature, contract: Contract) -> str:
     if signature.name in contract.supplied:
         return "Supplied"
-    return signature.name.removesuffix("From").replace("AxisAccelerations", "AxisVelocities")
+    return {**_OF_AXES, **_FROM}.get(signature.name, signature.name)
 
 
 def _method(signature: Signature, template: str, contract: Contract, templates: Environment) -> Method:
     text = templates.get_template(f"base/{template}.st.j2").render(
         contract.spelling,
         method=signature.name,
+        parameters=[p.name for p in signature.parameters],
         returns=signature.returns,
         projection=about_z(signature, contract) if signature.name == "FindProjection" else None,
     )

@@ -172,7 +172,7 @@ def _method(
     name = source.signature.name
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "reads_rotation": reads}
-    context["turns"] = any(p.name.endswith("Orientation") for p in source.signature.parameters)
+    context["turns"] = not set(block.interfaces).isdisjoint(contract.transformations[1:])
     if name == "ReasonOf":
         context["reasons"] = texts(kinematics)
     if source.program is not None:

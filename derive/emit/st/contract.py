@@ -154,12 +154,10 @@ def load(profile: str | None = None, file: Path = _FILE) -> Contract:
 def _loaded(profile: str | None, text: str) -> Contract:
     data = tomllib.loads(text)
     chosen = _chosen(profile or data["profile"], data["profiles"])
-    for name, other in (pair for one in chosen for pair in one.get("instead", {}).items()):
-        text = text.replace(name, other)
-    data = tomllib.loads(text)
     for one in chosen:
         data = _merged(data, one.get("tables", {}))
-    interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
+    types: Mapping[str, str] = data["types"]
+    interfaces = {key: _interface(key, table, types) for key, table in data.pop("interfaces").items()}
     newest = min(_version(one["library"]) for one in chosen)
     newer = {interface.name for interface in interfaces.values() if interface.since > newest}
     omits = frozenset(newer).union(*(one["omits"] for one in chosen))
@@ -167,21 +165,21 @@ def _loaded(profile: str | None, text: str) -> Contract:
               if name not in one["keeps"]}  # fmt: skip
     tables = data.pop("names")
     listed = tables.pop("list")
-    own = {name for one in chosen for name in one.get("instead", {}).values()}
-    groups = {key: _constants(table, own) for key, table in tables.items()}
+    own = {key for one in chosen for key in one.get("tables", {}).get("types", {})}
+    groups = {key: _constants(table, types, own) for key, table in tables.items()}
     data |= {key: {k: f"{listed}.{c.name}" for k, c in inside.items()} for key, inside in groups.items()}
     supplied, overridable = data.pop("supplied"), data.pop("overridable")
     names = tuple(Group(tables[key]["title"], tuple(inside.values())) for key, inside in groups.items())
     return Contract(
         interfaces,
-        _signatures(data.pop("own")),
-        _signatures(supplied, "PROTECTED"),
+        _signatures(data.pop("own"), types),
+        _signatures(supplied, types, "PROTECTED"),
         _needing(supplied),
         frozenset(key for key, table in (supplied | overridable).items() if "turning" in table),
-        _signatures(overridable, "PROTECTED"),
+        _signatures(overridable, types, "PROTECTED"),
         _needing(overridable),
-        _signatures(data.pop("offered"), "PROTECTED"),
-        _signatures(data.pop("private"), "PRIVATE"),
+        _signatures(data.pop("offered"), types, "PROTECTED"),
+        _signatures(data.pop("private"), types, "PRIVATE"),
         any(one.get("flat", False) for one in chosen),
         omits,
         tuple(name for one in chosen for name in one.get("transformations", ())),
@@ -207,15 +205,18 @@ def _needing(methods: Mapping[str, Mapping[str, Any]]) -> dict[str, frozenset[st
     return {key: frozenset(table["of"]) for key, table in methods.items() if "of" in table}
 
 
-def _constants(table: Mapping[str, Any], own: Collection[str]) -> dict[str, Constant]:
-    """The constants of a group by the name under which templates know them. own: types whose enumerators these are."""
-    kind = table["type"]
+def _constants(table: Mapping[str, Any], types: Mapping[str, str], own: Collection[str]) -> dict[str, Constant]:
+    """The constants of a group by the name under which templates know them. own: types that a profile brings along, and
+    whose enumerators these are.
+    """
+    stated = table["type"]
+    kind = types.get(stated, stated)
     entries = {key: entry for key, entry in table.items() if key not in ("title", "type")}
     return {
         key: Constant(
             entry["name"],
             kind,
-            entry["value"] if kind == "BOOL" else f"{kind}.{entry['name' if kind in own else 'value']}",
+            entry["value"] if kind == "BOOL" else f"{kind}.{entry['name' if stated in own else 'value']}",
             entry["meaning"]
             + ("" if entry.get("documented", True) else "; not documented")
             + (f": if missing, {entry['instead']}" if "instead" in entry else ""),
@@ -224,8 +225,8 @@ def _constants(table: Mapping[str, Any], own: Collection[str]) -> dict[str, Cons
     }
 
 
-def _interface(name: str, table: Mapping[str, Any]) -> Interface:
-    methods = _signatures(table.get("methods", {}))
+def _interface(name: str, table: Mapping[str, Any], types: Mapping[str, str]) -> Interface:
+    methods = _signatures(table.get("methods", {}), types)
     return Interface(name, _version(table["since"]), tuple(table["extends"]), table.get("properties", {}), methods)
 
 
@@ -233,15 +234,20 @@ def _version(text: str) -> tuple[int, ...]:
     return tuple(map(int, text.split(".")))
 
 
-def _signatures(methods: Mapping[str, Any], access: str = "PUBLIC") -> dict[str, Signature]:
-    return {name: _signature(name, m if isinstance(m, list) else m["signature"], access) for name, m in methods.items()}
+def _signatures(methods: Mapping[str, Any], types: Mapping[str, str], access: str = "PUBLIC") -> dict[str, Signature]:
+    stated = {name: m if isinstance(m, list) else m["signature"] for name, m in methods.items()}
+    return {name: _signature(name, one, types, access) for name, one in stated.items()}
 
 
-def _signature(name: str, stated: Sequence[str], access: str) -> Signature:
-    """A signature as the file states it: `["INT", "VAR_IN_OUT CONSTANT a : REAL; b : REAL", "VAR_OUTPUT c : INT"]`."""
+def _signature(name: str, stated: Sequence[str], types: Mapping[str, str], access: str) -> Signature:
+    """A signature as the file states it: `["error", "VAR_IN_OUT CONSTANT a : axes; b : REAL", "VAR_OUTPUT c : INT"]`.
+    types: the spelling of those that are entries of the file.
+    """
     returns, *groups = stated
     parameters: list[Parameter] = []
     for group in groups:
         _, scope, text = _SCOPE.split(group)
-        parameters += (Parameter(scope, *one.split(" : ")) for one in text.split("; "))
-    return Signature(name, returns, tuple(parameters), access)
+        for one in text.split("; "):
+            own, kind = one.split(" : ")
+            parameters.append(Parameter(scope, own, types.get(kind, kind)))
+    return Signature(name, types.get(returns, returns), tuple(parameters), access)

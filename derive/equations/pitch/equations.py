@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial, reduce_units
-from derive.equations.known_turns import Side, is_unknown, joints_of, matrix_of, named_entries, needed
+from derive.equations.known_turns import between_known, is_unknown, joints_of, needed
 from derive.equations.pitch.chain import matrix_of_turns
 from derive.equations.problem import Equation, Problem
 from derive.geometry.frames import Factor
@@ -23,22 +23,11 @@ IN_PLANE = real("in_plane")
 
 def followed_entries(problem: Problem) -> tuple[Equation, ...]:
     """The equations of the pitch once all turns before it are known, then those of the roll."""
-    turns = list(problem.turns)
-    own = [t for t in turns if joints_of(problem, t)]
-    unknown = [t for t in turns if is_unknown(problem, t)]
+    own = [t for t in problem.turns if joints_of(problem, t)]
+    unknown = [t for t in problem.turns if is_unknown(problem, t)]
     if not unknown or unknown != own[-problem.followed :][-len(unknown) :]:
         return ()
-    lets: list[Let] = []
-    entries = sp.Matrix(3, 3, list(problem.rotation))
-    front, back = Side("from", "base"), Side("before", "flange")
-    while not is_unknown(problem, turns[0]):
-        turn = turns.pop(0)
-        front = front.behind(joints_of(problem, turn), turn)
-        entries = named_entries(matrix_of(problem, turn, lets).T * entries, front.suffix, lets)
-    while problem.followed > 1 and not is_unknown(problem, turns[-1]):
-        turn = turns.pop()
-        back = back.behind(joints_of(problem, turn), turn)
-        entries = named_entries(entries * matrix_of(problem, turn, lets).T, front.suffix + back.suffix, lets)
+    turns, entries, lets = between_known(problem, moves_last=problem.followed > 1)
     if len(unknown) == problem.followed:
         return _pitch(problem, turns, entries, lets)
     return _roll(problem, turns[0], entries, lets)

@@ -532,6 +532,75 @@ softkin_status softkin_quantities(const softkin_mechanism *kind, const void *mac
       : status;
 }
 
+/* ---- for controllers: what is near, and angles ---- */
+
+softkin_status softkin_forward_near(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const softkin_frame *start, softkin_frame *frame, int8_t *configuration) {
+  if (start != NULL && kind->forward_from != NULL
+      && softkin_forward(kind, machine, axes, start, frame, configuration, NULL, NULL) == SOFTKIN_OK) {
+    return SOFTKIN_OK;
+  }
+  return softkin_forward(kind, machine, axes, NULL, frame, configuration, NULL, NULL);
+}
+
+softkin_status softkin_jacobian_near(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const softkin_frame *start, void *moved, double *rows) {
+  if (kind->start_at == NULL) {
+    return softkin_jacobian(kind, machine, axes, rows, NULL);
+  }
+  const softkin_status status = softkin_start_at(kind, machine, start, moved, NULL);
+  return status == SOFTKIN_OK ? softkin_jacobian(kind, moved, axes, rows, NULL) : status;
+}
+
+void softkin_rotation_of_angles(const double *angles, double rotation[3][3]) {
+  const double sa = sin(angles[0]*SOFTKIN_DEGREE), ca = cos(angles[0]*SOFTKIN_DEGREE);
+  const double sb = sin(angles[1]*SOFTKIN_DEGREE), cb = cos(angles[1]*SOFTKIN_DEGREE);
+  const double sc = sin(angles[2]*SOFTKIN_DEGREE), cc = cos(angles[2]*SOFTKIN_DEGREE);
+  const double rows[3][3] = {
+    {cc*cb, cc*sb*sa - sc*ca, cc*sb*ca + sc*sa},
+    {sc*cb, sc*sb*sa + cc*ca, sc*sb*ca - cc*sa},
+    {-sb, cb*sa, cb*ca},
+  };
+  for (int i = 0; i < 9; i += 1) {
+    rotation[i/3][i%3] = rows[i/3][i%3];
+  }
+}
+
+void softkin_angles_of_rotation(const softkin_frame *frame, const double *given, double *angles) {
+  const double (*r)[3] = frame->rotation;
+  const double across = hypot(r[0][0], r[1][0]);
+  const double first = across > SOFTKIN_COINCIDENT ? atan2(r[1][0], r[0][0]) : given[2]*SOFTKIN_DEGREE;
+  const double s = sin(first), c = cos(first);
+  const double a = atan2(s*r[0][2] - c*r[1][2], c*r[1][1] - s*r[0][1])*SOFTKIN_RADIAN;
+  const double b = atan2(-r[2][0], c*r[0][0] + s*r[1][0])*SOFTKIN_RADIAN;
+  double least = INFINITY;
+  for (int other = 0; other < 2; other += 1) { /* two triples turn alike */
+    const double shift = 180.0*other;
+    double found[3] = {a + shift, other == 0 ? b : 180.0 - b, first*SOFTKIN_RADIAN + shift}, distance = 0.0;
+    for (int i = 0; i < 3; i += 1) {
+      found[i] = softkin_nearest_period(found[i], given[i]);
+      distance += (found[i] - given[i])*(found[i] - given[i]);
+    }
+    if (other == 0 || distance < least - SOFTKIN_TIE) {
+      least = distance;
+      angles[0] = found[0], angles[1] = found[1], angles[2] = found[2];
+    }
+  }
+}
+
+void softkin_turns_by_angles(const double *angles, double turns[3][3]) {
+  const double sb = sin(angles[1]*SOFTKIN_DEGREE), cb = cos(angles[1]*SOFTKIN_DEGREE);
+  const double sc = sin(angles[2]*SOFTKIN_DEGREE), cc = cos(angles[2]*SOFTKIN_DEGREE);
+  const double rows[3][3] = {{cb*cc, -sc, 0.0}, {cb*sc, cc, 0.0}, {-sb, 0.0, 1.0}};
+  for (int i = 0; i < 9; i += 1) {
+    turns[i/3][i%3] = rows[i/3][i%3];
+  }
+}
+
+double softkin_unit_of(const softkin_mechanism *kind, int axis) {
+  return kind->axes[axis].unit[0] == 'd' ? SOFTKIN_DEGREE : 1.0;
+}
+
 /* ---- all branches ---- */
 
 /* What sorts the roots of a search into slots. */

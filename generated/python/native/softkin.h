@@ -307,6 +307,35 @@ int8_t softkin_branch_byte(double margin);
 /** The number of the turn of a value in degrees: 1 is [-180, 180), -1 is [-540, -180) …; 0: beyond a byte. */
 int8_t softkin_turn_of(double value);
 
+/**
+ * As `softkin_forward` from a frame nearby; if the machine has no start, or no frame is found from there,
+ * from the home pose.
+ *
+ * @param start NULL: from the home pose
+ */
+softkin_status softkin_forward_near(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const softkin_frame *start, softkin_frame *frame, int8_t *configuration);
+
+/**
+ * As `softkin_jacobian`, for the frame that the axes have at or near `start`.
+ *
+ * @param moved `kind->machine_size` bytes, of a machine that has `start_at`
+ */
+softkin_status softkin_jacobian_near(const softkin_mechanism *kind, const void *machine, const double *axes,
+    const softkin_frame *start, void *moved, double *rows);
+
+/** The rotation Rz(c) Ry(b) Rx(a) of angles {a, b, c}, degrees. */
+void softkin_rotation_of_angles(const double *angles, double rotation[3][3]);
+
+/** The angles {a, b, c} of a rotation that are nearest to given ones; if b is a right angle, with their c. */
+void softkin_angles_of_rotation(const softkin_frame *frame, const double *given, double *angles);
+
+/** The rates of turning about x, y, z (rows) by those of angles {a, b, c}. */
+void softkin_turns_by_angles(const double *angles, double turns[3][3]);
+
+/** The radians in the unit of a rotary axis, and 1 of a linear one. */
+double softkin_unit_of(const softkin_mechanism *kind, int axis);
+
 /* From here on: declarations for the sources of machines. */
 
 #define SOFTKIN_DEGREE (3.14159265358979323846/180.0)

@@ -12,38 +12,24 @@ from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
+from softkin._around import Around
 from softkin._chain import bias, columns, passed, true_chain
-from softkin._configuration import Criterion
-from softkin._core import TWIST, Image, Mechanism, Pose
+from softkin._core import TWIST, Mechanism, Pose
 from softkin._deviations import are_inputs, checked, units_of
-from softkin._ends import Ends
 from softkin._frame import Frame
 from softkin._meeting import Meeting
 from softkin._mounted import PLAIN, Mounted
 from softkin._scalar import DEGREE, reasonable
 from softkin._start import IterativeForward
 from softkin._tools import TILTS
-from softkin._types import (
-    Configuration,
-    ConfigurationLike,
-    Diagnosis,
-    FrameLike,
-    KinematicsError,
-    Matrix,
-    Reals,
-    Rotation,
-    Signs,
-    Status,
-    Turns,
-    Vector,
-)
+from softkin._types import Diagnosis, FrameLike, KinematicsError, Matrix, Reals, Rotation, Signs, Status, Turns, Vector
 from softkin._vectors import dot, transposed
 
 if TYPE_CHECKING:
     from softkin._array import Programs
 
 
-class Calibrated(Mechanism):
+class Calibrated(Around):
     """A machine with deviations from its drawing: what `Mechanism.calibrated` returns.
 
     Axes, configuration, turns and limits are those of the nominal machine; frames, Jacobian and axis values are those
@@ -53,7 +39,6 @@ class Calibrated(Mechanism):
 
     NAME = "Calibrated"
     PARAMETERS = ()
-    ROLE = "complete"
 
     nominal: Mechanism
     """The machine as it is drawn, on its base and with its tool."""
@@ -64,17 +49,11 @@ class Calibrated(Mechanism):
     def __init__(self, nominal: Mechanism, deviations: Mapping[str, float]) -> None:
         """Calibrate a machine in degrees: see `calibrated`. deviations: checked, none of them zero."""
         bare = bare_of(nominal)
-        known = {
-            "NAME": f"{nominal.NAME} as measured", "AXES": nominal.AXES, "CONFIGURATION": nominal.CONFIGURATION,
-            "DEFAULT_CONFIGURATION": nominal.DEFAULT_CONFIGURATION, "MARGINS": nominal.MARGINS,
-            "READS_ROTATION": nominal.READS_ROTATION, "FREEDOM": nominal.FREEDOM, "BRANCHES": nominal.BRANCHES,
-            "PERIOD_AXES": nominal.PERIOD_AXES, "HELD": nominal.HELD, "DISTANCE_AXES": nominal.DISTANCE_AXES,
-            "JACOBIAN_ROWS": nominal.JACOBIAN_ROWS, "parameters": MappingProxyType({}),
-            "checks_limits": nominal.checks_limits, "nominal": nominal,
+        own = {
+            "NAME": f"{nominal.NAME} as measured", "parameters": MappingProxyType({}), "nominal": nominal,
             "_deviations": MappingProxyType(dict(deviations)), "_zeros": bare._axis_zeros(),
         }  # fmt: skip
-        for name, value in known.items():
-            object.__setattr__(self, name, value)
+        self._surround(nominal, own)
         keys = [axis.name.lower().replace(" ", "_") for axis in self.AXES]
         self._gains = tuple(1.0 + deviations.get(f"{key}_gain", 0.0) for key in keys)
         self._offsets = tuple(deviations.get(f"{key}_offset", 0.0) for key in keys)
@@ -111,11 +90,6 @@ class Calibrated(Mechanism):
         """Copying and pickling calibrate the machine again."""
         return calibrated, (self.nominal, dict(self._deviations))
 
-    @property
-    def limits(self) -> dict[str, Ends | None]:
-        """The limits of the nominal machine."""
-        return self.nominal.limits
-
     def changed(self, **parameters: Any) -> Self:
         """The same deviations of a nominal machine with other parameters."""
         return cast("Self", calibrated(self.nominal.changed(**parameters), self._deviations))
@@ -137,56 +111,8 @@ class Calibrated(Mechanism):
         made = Mechanism.from_dict(values["nominal"]).calibrated(values["deviations"])
         return cast("Self", made.in_radians() if is_radian else made)
 
-    @property
-    def _criteria(self) -> tuple[Criterion, ...]:
-        return self.nominal._criteria
-
-    @property
-    def _branch_bytes(self) -> list[int]:
-        return self.nominal._branch_bytes
-
-    @property
-    def _period_bytes(self) -> list[int]:
-        return self.nominal._period_bytes
-
-    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
-        return self.nominal._read(configuration)
-
-    def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
-        return self.nominal._joined(branches, periods)
-
-    def _turn_sizes(self) -> Reals:
-        return self.nominal._turn_sizes()
-
-    def _periods(self, axes: Reals) -> Configuration:
-        return self.nominal._periods(axes)
-
-    def _written(self, margins: Reals, axes: Reals) -> Configuration:
-        return self.nominal._written(margins, axes)
-
-    def _parameter_units(self) -> dict[str, str]:
-        return self.nominal._parameter_units()
-
-    def _ranges(self) -> tuple[tuple[float, float], ...]:
-        return self.nominal._ranges()
-
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        return self.nominal._quantities(axes)
-
-    def _warning_distance(self) -> float:
-        return self.nominal._warning_distance()
-
-    def _limits(self, axes: Reals) -> Diagnosis | None:
-        return self.nominal._beyond_limits(axes)
-
-    def _follows(self) -> str:
-        return self.nominal._follows()
-
     def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
         return self.nominal._nearest_flange(rotation)
-
-    def _image(self) -> Image | Status:
-        return self.nominal._image()
 
     def _axis_zeros(self) -> Reals:
         return self._zeros

@@ -11,18 +11,16 @@ from math import hypot, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
-from softkin._configuration import AUTOMATIC, Criterion, slots
+from softkin._around import Around
+from softkin._configuration import AUTOMATIC, slots
 from softkin._constants import EXACT
 from softkin._core import PITCH, TURN, TWIST, Image, Mechanism, Pose
-from softkin._ends import Ends
 from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import reasonable
 from softkin._search import SearchedInverse
 from softkin._start import IterativeForward
 from softkin._tools import TILTS, check_tool, known_shift, rows_of
 from softkin._types import (
-    Configuration,
-    ConfigurationLike,
     Diagnosis,
     FrameLike,
     KinematicsError,
@@ -51,7 +49,7 @@ NOWHERE: Vector = (nan, nan, nan)
 NOT_MET = "no rotation of the flange meets the position with this tool"
 
 
-class Mounted(Mechanism):
+class Mounted(Around):
     """A machine on a base, with a tool at its flange: what `Mechanism.with_base` and `Mechanism.with_tool` return.
 
     It has the axes, the configuration, the limits and the singularities of the bare machine. Its frames are those of
@@ -63,7 +61,6 @@ class Mounted(Mechanism):
 
     NAME = "Mounted"
     PARAMETERS = ()
-    ROLE = "complete"
 
     bare: Mechanism
     """The machine without base and tool."""
@@ -74,17 +71,11 @@ class Mounted(Mechanism):
         """Mount a machine: see `mounted`. base, tool: with rotations that are exact to all digits."""
         own = "" if base == PLAIN else " on a base"
         own += "" if tool == PLAIN else " with a tool"
-        known = {
-            "NAME": bare.NAME + own, "AXES": bare.AXES, "CONFIGURATION": bare.CONFIGURATION,
-            "DEFAULT_CONFIGURATION": bare.DEFAULT_CONFIGURATION, "MARGINS": bare.MARGINS,
-            "READS_ROTATION": bare.READS_ROTATION, "FREEDOM": bare.FREEDOM, "BRANCHES": bare.BRANCHES,
-            "PERIOD_AXES": bare.PERIOD_AXES, "HELD": bare.HELD, "DISTANCE_AXES": bare.DISTANCE_AXES,
-            "JACOBIAN_ROWS": rows_of(bare, base, tool), "parameters": MappingProxyType({}),
-            "checks_limits": bare.checks_limits, "bare": bare, "base": base, "tool": tool,
+        self._surround(bare, {
+            "NAME": bare.NAME + own, "JACOBIAN_ROWS": rows_of(bare, base, tool), "parameters": MappingProxyType({}),
+            "bare": bare, "base": base, "tool": tool,
             "_kind": bare._follows(), "_shift": known_shift(bare, tool.position),
-        }  # fmt: skip
-        for name, value in known.items():
-            object.__setattr__(self, name, value)
+        })  # fmt: skip
         self._seal()
 
     def __repr__(self) -> str:
@@ -101,11 +92,6 @@ class Mounted(Mechanism):
     def __reduce__(self) -> tuple[Callable[..., Mechanism], tuple[Mechanism, Frame, Frame]]:
         """Copying and pickling mount the machine again."""
         return mounted, (self.bare, self.base, self.tool)
-
-    @property
-    def limits(self) -> dict[str, Ends | None]:
-        """The limits of the bare machine."""
-        return self.bare.limits
 
     def changed(self, **parameters: Any) -> Self:
         """A copy with other parameters of the bare machine, or with another `base=` or `tool=`."""
@@ -137,54 +123,12 @@ class Mounted(Mechanism):
         return cast("Self", made.in_radians() if is_radian else made)
 
     @property
-    def _criteria(self) -> tuple[Criterion, ...]:
-        return self.bare._criteria
-
-    @property
-    def _branch_bytes(self) -> list[int]:
-        return self.bare._branch_bytes
-
-    @property
-    def _period_bytes(self) -> list[int]:
-        return self.bare._period_bytes
-
-    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
-        return self.bare._read(configuration)
-
-    def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
-        return self.bare._joined(branches, periods)
-
-    @property
     def deviations(self) -> Mapping[str, float]:
         """The deviations of the bare machine: those of base and tool stand behind its base and in front of its tool."""
         return self.bare.deviations
 
-    def _turn_sizes(self) -> Reals:
-        return self.bare._turn_sizes()
-
-    def _periods(self, axes: Reals) -> Configuration:
-        return self.bare._periods(axes)
-
-    def _written(self, margins: Reals, axes: Reals) -> Configuration:
-        return self.bare._written(margins, axes)
-
-    def _parameter_units(self) -> dict[str, str]:
-        return self.bare._parameter_units()
-
-    def _ranges(self) -> tuple[tuple[float, float], ...]:
-        return self.bare._ranges()
-
-    def _quantities(self, axes: Reals) -> Reals | Status:
-        return self.bare._quantities(axes)
-
-    def _warning_distance(self) -> float:
-        return self.bare._warning_distance()
-
     def _has_one_solution_a_branch(self) -> bool:
         return self.bare._has_one_solution_a_branch()
-
-    def _limits(self, axes: Reals) -> Diagnosis | None:
-        return self.bare._beyond_limits(axes)
 
     def _singularity(self, axes: Reals) -> Reals | Status:
         return self.bare._singularity(axes)

@@ -8,8 +8,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
+from softkin._around import Around
 from softkin._configuration import Criterion
-from softkin._core import Image, Mechanism, Pose
+from softkin._core import Mechanism, Pose
 from softkin._input import reals
 from softkin._offset import OffsetKinematics
 from softkin._orientation import OrientationKinematics, TotalImage
@@ -19,7 +20,6 @@ from softkin._twist import TwistChoice
 from softkin._types import (
     Axis,
     Configuration,
-    ConfigurationLike,
     Diagnosis,
     FrameLike,
     Matrix,
@@ -64,7 +64,7 @@ def _parameter(given: Parameter) -> Parameter:
     return replace(given, unit="rad", low=given.low * DEGREE, high=given.high * DEGREE, default=default)
 
 
-class InRadians(Mechanism):
+class InRadians(Around):
     """A machine with radians for degrees: its axes, references, offsets and limits, and what `diagnose` says.
 
     `part` is the machine in degrees. Its calls are those of `part`. A pitch stays per turn, a gear per degree.
@@ -74,20 +74,17 @@ class InRadians(Mechanism):
 
     PARAMETERS = ()
     part: Mechanism
+    _angles: tuple[bool, ...]
+    """Whether each axis is in degrees in `part`."""
 
     def __init__(self, part: Mechanism) -> None:
         """part: the machine in degrees."""
-        self.part, self.checks_limits = part, part.checks_limits
-        self.NAME, self.ROLE, self.FREEDOM = part.NAME, part.ROLE, part.FREEDOM
-        self.AXES = tuple(_axis(axis) for axis in part.AXES)
-        self._angles = tuple(axis.unit == "deg" for axis in part.AXES)
-        self.CONFIGURATION, self.DEFAULT_CONFIGURATION = part.CONFIGURATION, part.DEFAULT_CONFIGURATION
-        self.JACOBIAN_ROWS, self.MARGINS, self.READS_ROTATION = part.JACOBIAN_ROWS, part.MARGINS, part.READS_ROTATION
-        self.BRANCHES, self.PERIOD_AXES, self.HELD = part.BRANCHES, part.PERIOD_AXES, part.HELD
-        self.DISTANCE_AXES = part.DISTANCE_AXES
         angles = {p.name for p in part.PARAMETERS if p.unit == "deg"}
         found = {name: v * DEGREE if name in angles else v for name, v in part.parameters.items()}
-        self.parameters = MappingProxyType(found)
+        self._surround(part, {
+            "NAME": part.NAME, "ROLE": part.ROLE, "AXES": tuple(_axis(axis) for axis in part.AXES), "part": part,
+            "parameters": MappingProxyType(found), "_angles": tuple(axis.unit == "deg" for axis in part.AXES),
+        })  # fmt: skip
         self._seal()
 
     def in_degrees(self) -> Any:
@@ -195,9 +192,6 @@ class InRadians(Mechanism):
         for signs, found in self.part._every_solution(position, rotation, self._deg(reference)):
             yield signs, self._answer(found)
 
-    def _warning_distance(self) -> float:
-        return self.part._warning_distance()
-
     def _has_one_solution_a_branch(self) -> bool:
         return self.part._has_one_solution_a_branch()
 
@@ -245,31 +239,11 @@ class InRadians(Mechanism):
     def _turns_unseen(self) -> bool:
         return self.part._turns_unseen()
 
-    def _follows(self) -> str:
-        return self.part._follows()
-
     def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
         return self.part._nearest_flange(rotation)
 
     def _parameter_units(self) -> dict[str, str]:
         return {name: "rad" if unit == "deg" else unit for name, unit in self.part._parameter_units().items()}
-
-    def _image(self) -> Image | Status:
-        return self.part._image()
-
-    @property
-    def _branch_bytes(self) -> list[int]:
-        return self.part._branch_bytes
-
-    @property
-    def _period_bytes(self) -> list[int]:
-        return self.part._period_bytes
-
-    def _read(self, configuration: ConfigurationLike | None) -> tuple[Configuration, Turns]:
-        return self.part._read(configuration)
-
-    def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
-        return self.part._joined(branches, periods)
 
     def _written(self, margins: Reals, axes: Reals) -> Configuration:
         return self.part._written(margins, self._deg(axes))

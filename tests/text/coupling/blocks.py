@@ -11,7 +11,7 @@ import softkin
 from derive.description.mechanism import Mechanism
 from tests.catalogue.coupling.parts import ORIENTATIONS, Part, orientation_parts, part
 from tests.text import values
-from tests.text.both import Both
+from tests.text.both import Both, Machine
 from tests.text.controller import OK, Answer, Controller
 from tests.text.samples import Rows, Sample, tilted
 from tests.text.units import compiled
@@ -89,17 +89,6 @@ class OrientationController(Controller):
         found = self._new(values.VECTOR_TYPE)
         status = self._call(method, {"v": found}, mR=values.matrix(self.library, rows), **arguments)
         return self._answer(status, lambda: values.vector_of(found))
-
-
-@dataclass(frozen=True, eq=False)
-class Machine:
-    """What `tests.text.comparisons` asks of a machine."""
-
-    label: str
-    mechanism: Mechanism
-    given: dict[str, float]
-    robot: softkin.Mechanism
-    reach: float = 300.0
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from derive.description.mechanism import Mechanism, Parameter, Role, Turning
 from derive.kinematics.parameters import machine_parameters
 from tests.mechanisms import catalogue
 from tests.random_axes import random_axes
-from tests.text.both import Both
+from tests.text.both import Both, Machine
 from tests.text.comparisons import COMPARISONS as SERIAL
 from tests.text.controller import OK, Controller, assert_same
 from tests.text.samples import HALF_TURN, NO_TURN, Sample, tilted
@@ -25,17 +25,6 @@ POSES = 36
 """Regular poses of one machine."""
 BROKEN = 12
 """Axis values of one machine, drawn without asking whether the loop closes."""
-
-
-@dataclass(frozen=True, eq=False)
-class Machine:
-    """A loop with its dimensions, in Python."""
-
-    label: str
-    mechanism: Mechanism
-    given: Mapping[str, float]
-    robot: softkin.Mechanism
-    reach: float
 
 
 @dataclass(frozen=True)

@@ -40,20 +40,25 @@ def written(first: str = "", **changes: str) -> str:
     return HEAD + first + "\nMECHANISM = Mechanism(" + ", ".join(f"{n}={p}" for n, p in parts.items()) + ")\n"
 
 
+def chained(part: str, other: str) -> str:
+    """The text with another part of the chain."""
+    return written(chain=CHAIN.replace(part, other))
+
+
 def nominal(value: str) -> str:
     return written(f'L1 = length("link_1", "link", nominal={value})')
 
 
 FAULTS = {
-    "a name with a typing error": (written(chain=CHAIN.replace("L2", "L22")), ":9: NameError: name 'L22' is not"),
+    "a name with a typing error": (chained("L2", "L22"), ":9: NameError: name 'L22' is not"),
     "a parenthesis too few": (written(chain="Rz(A1 * Tx(L1"), "SyntaxError: '(' was never closed"),
     "a joint too few in the list": (written(joints="(A1, A2, Z1)"), "chain reads 'a4', which is not a joint or a par"),
-    "a joint too few in the chain": (written(chain=CHAIN.replace("* Tz(Z1) ", "")), "joint 'Z1' occurs nowhere in"),
+    "a joint too few in the chain": (chained("* Tz(Z1) ", ""), "joint 'Z1' occurs nowhere in"),
     "a parameter too few": (written(parameters="(L1,)"), "chain reads 'link_2', which is not a joint or a parameter"),
-    "a joint used twice": (written(chain=CHAIN.replace("A2", "A1")), "joint 'A2' occurs nowhere in the closure"),
+    "a joint used twice": (chained("A2", "A1"), "joint 'A2' occurs nowhere in the closure"),
     "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'A1' is given 2 times"),
-    "a joint by its name": (written(chain=CHAIN.replace("A1", '"A1"')), "TypeError: Rz('A1') needs a joint, a param"),
-    "nothing for a joint": (written(chain=CHAIN.replace("A1", "None")), "Rz(None) needs a joint, a parameter, a num"),
+    "a joint by its name": (chained("A1", '"A1"'), "TypeError: Rz('A1') needs a joint, a param"),
+    "nothing for a joint": (chained("A1", "None"), "Rz(None) needs a joint, a parameter, a num"),
     "names for joints": (written(joints='("A1", "A2")'), "joints must not hold 'A1': as in joints=(A1, A2)"),
     "names for parameters": (written(parameters='("link_1",)'), "parameters must not hold 'link_1': as in"),
     "one joint without a comma": (written(joints="(A1)"), "joints must be a tuple, not a Joint: a comma makes"),
@@ -70,7 +75,7 @@ FAULTS = {
         "ZeroDivisionError: division by zero",
     ),
     "a comparison in the chain": (
-        written(chain=CHAIN.replace("Z1", "Z1.symbol > 0")),
+        chained("Z1", "Z1.symbol > 0"),
         "Tz(z1 > 0) of the chain is given what is true or false: it needs an angle or a length",
     ),
     "a comparison for an indicator": (
@@ -110,7 +115,7 @@ FAULTS = {
         written(branches='(branch("elbow", sin(A2) - 90, right=1, left=-1),)'),
         "its indicator agrees with 0 steps, not one: its sign must change where two solutions meet, those for a2",
     ),
-    "degrees": (written(chain=CHAIN.replace("Rz(A2)", "Rz(90) * Rz(A2)")), "Rz(90) of the chain turns by 90 radians"),
+    "degrees": (chained("Rz(A2)", "Rz(90) * Rz(A2)"), "Rz(90) of the chain turns by 90 radians"),
     "a size for a length": (
         written(chain=CHAIN.replace("Tz(Z1)", "Tz(abs(Z1.symbol))")),
         "Tz(Abs(z1)) of the chain holds Abs(z1): it is made of +, -, *, powers, sines and cosines",
@@ -119,16 +124,13 @@ FAULTS = {
         written(chain=CHAIN.replace("Tz(Z1)", "Tz(sqrt(Z1.symbol))")),
         "Tz(sqrt(z1)) of the chain holds sqrt(z1): it is made of",
     ),
-    "one over a joint": (
-        written(chain=CHAIN.replace("Tz(Z1)", "Tz(1 / Z1.symbol)")),
-        "Tz(1/z1) of the chain holds 1/z1: it is made of",
-    ),
+    "one over a joint": (chained("Tz(Z1)", "Tz(1 / Z1.symbol)"), "Tz(1/z1) of the chain holds 1/z1: it is made of"),
     "a sine of another library": (
         written("import math", branches='(branch("elbow", math.sin(A2), right=1, left=-1),)'),
         "TypeError: must be real number, not Joint",
     ),
     "a flange that is tilted": (
-        written(chain=CHAIN.replace("Rz(A4)", "Rx(pi / 4) * Rz(A4)")),
+        chained("Rz(A4)", "Rx(pi / 4) * Rz(A4)"),
         "its rotation is not one turn about z, it turns about z, x, z; command the whole rotation, or a direction, or",
     ),
     "a word for a vendor": (written(vendor='"Acme"'), "vendor must not be 'Acme': as in vendor=Vendor.TEXTBOOK"),
@@ -147,7 +149,7 @@ FAULTS = {
         written(chain="denavit_hartenberg((A1, 0, L1), (A2, 0, L2, 0))"),
         "ValueError: not enough values to unpack (expected 4, got 3)",
     ),
-    "a length divided by zero": (written(chain=CHAIN.replace("Tx(L1)", "Tx(L1 / 0)")), "holds what is no number"),
+    "a length divided by zero": (chained("Tx(L1)", "Tx(L1 / 0)"), "holds what is no number"),
     "a field of a joint with a typing error": (
         written('A2 = rotary("A2", "turn", limit=(-90, 90))'),
         "unexpected keyword argument 'limit'; did you mean 'limits'?",
@@ -156,14 +158,8 @@ FAULTS = {
         written('L1 = length("link_1", "link", nominl=1)'),
         "unexpected keyword argument 'nominl'; did you mean 'nominal'?",
     ),
-    "a frame in capitals": (
-        written(chain=CHAIN.replace("Rz(A2)", "RZ(A2)")),
-        "name 'RZ' is not defined; did you mean 'Rz'?",
-    ),
-    "a joint in small letters": (
-        written(chain=CHAIN.replace("A2", "a2")),
-        ":9: NameError: name 'a2' is not defined; did you mean 'A2'?",
-    ),
+    "a frame in capitals": (chained("Rz(A2)", "RZ(A2)"), "name 'RZ' is not defined; did you mean 'Rz'?"),
+    "a joint in small letters": (chained("A2", "a2"), ":9: NameError: name 'a2' is not defined; did you mean 'A2'?"),
     "a misspelt member": (
         written(task='Task("xyz", Turning.ABOUTZ)'),
         ":9: AttributeError: ABOUTZ; did you mean 'ABOUT_Z'?",
@@ -173,11 +169,11 @@ FAULTS = {
         "AttributeError: module 'sympy' has no attribute 'Sin'; did you mean 'sin'?",
     ),
     "an area for a length": (
-        written(chain=CHAIN.replace("Tx(L1)", "Tx(L1 * L2)")),
+        chained("Tx(L1)", "Tx(L1 * L2)"),
         "Tx(link_1*link_2) of the chain shifts by link_1*link_2, which is no length: its powers must add to 1",
     ),
     "a slide times a length": (
-        written(chain=CHAIN.replace("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)")),
+        chained("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)"),
         "of the chain shifts by link_1*z1/2, which is no length: its powers must add to 1",
     ),
     "a misspelt import": (written("from derive.mechanism import Mechanizm"), "did you mean 'Mechanism'?"),
@@ -185,12 +181,9 @@ FAULTS = {
         written('A2 = rotary("A2", "turn", limits=(90, -90))'),
         "joint 'A2': its limits (90, -90) are empty; state the lower end first",
     ),
-    "a joint as a factor": (
-        written(chain=CHAIN.replace("Rz(A2)", "A2")),
-        "TypeError: A2 is a number, not a frame: as in Rz(A2) or Tz(A2)",
-    ),
+    "a joint as a factor": (chained("Rz(A2)", "A2"), "TypeError: A2 is a number, not a frame: as in Rz(A2) or Tz(A2)"),
     "a joint as the first factor": (
-        written(chain=CHAIN.replace("Rz(A1)", "A1")),
+        chained("Rz(A1)", "A1"),
         "TypeError: a chain is a product of frames, not a number: as in Rz(A1) * Tx(L1)",
     ),
     "a character of zero": (written() + "A9 = 1\0", ":10: the line holds a byte that is 0"),
