@@ -71,7 +71,7 @@ def main() -> int:
         plugin = Path(folder, "counted.so")
         _run(HERE, *PLUGIN, "counted.c", "-o", str(plugin))
         lines = list(pool.map(partial(_lines, plugin), derived.map(machine_at, range(number))))
-    FILE.write_text("\n\n".join([_head(), *lines]) + "\n", encoding="utf-8")
+    FILE.write_text("\n".join([_head(), "\n[machines]", *lines]) + "\n", encoding="utf-8")
     cores.cache_clear()
     counted.cache_clear()
     for page, blocks in PAGES.items():
@@ -87,17 +87,18 @@ def with_table(text: str, blocks: Sequence[str]) -> str:
 
 
 def _lines(plugin: Path, machine: Machine) -> str:
-    """What the file says of a machine."""
+    """The line of a machine."""
     forward, inverse = machine.operations
-    lines = [f"[machines.{machine.name}]", f"operations = [{forward}, {inverse}]"]
+    parts = [f"operations = [{forward}, {inverse}]"]
     with TemporaryDirectory() as folder:
         for path, text in machine.files.items():
             Path(folder, path).write_text(text, encoding="utf-8")
         for core in TARGETS:
             calls = _instructions(core, Path(folder), plugin)
-            lines.append(f"{core.name} = [{', '.join(f'[{usual}, {most}]' for usual, most in calls)}]")
-    print(machine.name, *lines[1:], flush=True)
-    return "\n".join(lines)
+            parts.append(f"{core.name} = [{', '.join(f'[{usual}, {most}]' for usual, most in calls)}]")
+    line = f"{machine.name} = {{{', '.join(parts)}}}"
+    print(line, flush=True)
+    return line
 
 
 def _instructions(core: Target, folder: Path, plugin: Path) -> list[tuple[int, int]]:
@@ -129,10 +130,9 @@ def _head() -> str:
         "# The speed of a processor is no measurement: it is what microseconds assume."
     )
     speeds = (
-        f'[[cores]]\nname = "{core.name}"\nmegahertz = {core.megahertz}\nper_cycle = {core.per_cycle}'
-        for core in TARGETS
+        f'  {{name = "{core.name}", megahertz = {core.megahertz}, per_cycle = {core.per_cycle}}},' for core in TARGETS
     )
-    return "\n\n".join([about, *speeds])
+    return "\n".join([about, "cores = [", *speeds, "]"])
 
 
 if __name__ == "__main__":
