@@ -12,5 +12,6 @@ inputs: the inputs of a block: type, default, range, unit
 library: all files: text, PLCopenXML and the import script
 methods: the methods of a block, and the spelling of the values that they read
 pictures: the pictures in the descriptions of blocks, and the overview
+sample: a sample project: a program that moves the machine, a panel to jog it, and its drawing that moves
 self_test: the self-test of a block, as tables of calls and answers
 """
