@@ -1,5 +1,7 @@
 """The sample projects: valid, and executed on stand-ins: the moves, the panel, and the picture at random axes."""
 
+import json
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -14,6 +16,7 @@ from derive.description.mechanism import Mechanism
 from derive.drawing.drawing import scene_at
 from derive.drawing.pose import nominal_machine, pose_at
 from derive.drawing.scene import Body
+from derive.emit.softmotion.library import StructuredTextFiles
 from derive.kinematics.sampling import sample_axes
 from derive.report.reference_calls import Machine
 from tests.codesys.guide import renamed
@@ -294,3 +297,35 @@ def test_the_panel_jogs_axes_and_coordinates(name: str) -> None:
     group.fault, panel.xEnable = "SMC_NO_ERROR", False
     panel()
     assert panel.eError == "SMC_NO_ERROR" and panel.sError == ""
+
+
+PAGE = (OUTPUT.parent / "docs" / "FIRST_PROJECT.md").read_text(encoding="utf-8")
+
+
+def test_the_page_names_what_there_is() -> None:
+    """Its table has the samples with their drives; its variables can be read from outside, and its dimensions are those
+    of the sample.
+    """
+    rows = re.findall(r"^\| [^|]+ \| `(\S+)` \| `samples/(\w+)\.xml` \| ([^|]+) \|$", PAGE, re.MULTILINE)
+    assert {name for _, name, _ in rows} == set(SAMPLES)
+    for file, name, drives in rows:
+        named, (first, *_, last) = re.findall(r"`(\w+)`", drives), drives_of(name)
+        assert (OUTPUT / "st" / file).exists() and file.endswith(f"/{name}.xml")
+        assert named == (drives_of(name) if " to " not in drives else [first, last])
+    declared = {part.path: part.declaration for part in parts_of(SAMPLES["Softkin_Scara2_Z"])}
+    for program, name in re.findall(r"`(PRG_\w+)\.(\w+)", PAGE):
+        outside = declared[program].split("\nVAR\n")[0]
+        assert re.search(rf"^  {name} : ", outside, re.MULTILINE), name
+    assert set(re.findall(r"`(PRG_\w+|SamplePoint|Softkin_\w+_Drawing)`", PAGE)) <= set(declared)
+    for dimension, value in re.findall(r"`(d\w+)` (\d+)", PAGE):
+        assert f"{dimension} := {value}.0" in SAMPLES["Softkin_Scara2_Z"]
+
+
+@pytest.mark.parametrize("name", ["Rail", "Target", "SamplePoint"])
+def test_a_machine_with_a_name_of_the_sample_comes_without(name: str) -> None:
+    """Its block would be hidden by a variable, or replace an object: it is written all the same, and alone."""
+    language = StructuredTextFiles()
+    part = language.part(kinematics_of(next(m for _, m in catalogue() if m.name == "Kin_Gantry2")))
+    files = language.files([json.loads(json.dumps(part).replace("Softkin_Gantry2", name))])
+    assert f"gantry/{name}.xml" in files
+    assert (f"samples/{name}.xml" in files) == (name == "Rail")

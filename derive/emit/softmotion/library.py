@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import ClassVar
 
 from jinja2 import Environment
 
+from derive.description.mechanism import DescriptionError
 from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
 from derive.emit.plcopen.objects import Object, as_text, needed, objects_of, uses
@@ -88,9 +90,8 @@ class StructuredTextFiles:
         """
         contract, templates = load(self.profile), _templates()
         objects = dict(_objects(parts, contract, templates))
-        samples = dict(_samples(parts, contract))
-        for inside in ({}, *({path: sample} for path, sample in samples.items())):
-            refuse_clashes({f"{path}.st": one for path, one in (objects | inside).items()})
+        refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
+        samples = dict(_samples(parts, objects, contract))
         files = {f"{path}.st": f"{_PREAMBLE}\n{as_text(inside)}" for path, inside in (objects | samples).items()}
         files |= {f"{path}.xml": text for path, text in _documents(objects, contract)}
         files |= {f"{p}.xml": plcopen.document(p.split("/")[1], GENERATED, {SAMPLES: s}) for p, s in samples.items()}
@@ -157,14 +158,21 @@ def _self_tests(
         yield f"{SELF_TESTS}/{SELF_TEST_PROGRAM}", objects_of(text)
 
 
-def _samples(parts: Sequence[Part], contract: Contract) -> Iterator[tuple[str, tuple[Object, ...]]]:
+def _samples(
+    parts: Sequence[Part], objects: Mapping[str, tuple[Object, ...]], contract: Contract
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of the sample projects: of the catalogue those that the contract names, and of a single machine its
-    own. Each is for a project of its own: their programs have the same names.
+    own. Each is for a project of its own: their programs have the same names. A machine whose block has the name of
+    something in its sample comes without.
     """
     wanted = contract.spelling["samples"]["blocks"]
     for part in parts:
-        if part["sample"] and (len(parts) == 1 or part["row"]["block"] in wanted):
-            yield f"{SAMPLES}/{part['row']['block']}", objects_of(part["sample"])
+        block = part["row"]["block"]
+        if part["sample"] and (len(parts) == 1 or block in wanted):
+            inside = {f"{SAMPLES}/{block}": objects_of(part["sample"])}
+            with suppress(DescriptionError):
+                refuse_clashes({**objects, **inside})
+                yield from inside.items()
 
 
 def _documents(objects: Mapping[str, Sequence[Object]], contract: Contract) -> Iterator[tuple[str, str]]:
