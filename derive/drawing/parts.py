@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
@@ -84,10 +84,21 @@ def links_of(kinematics: Kinematics) -> Parts:
     return _named(kinematics, values, shape)
 
 
-def lines_of(shape: Mapping[str, Any]) -> tuple[tuple[int, int, str], ...]:
-    """The lines of a loop: the places of their ends, and the axes that drive them. They are arms (a point for one that
-    bars draw), ways of carriages, rods, and the plate as a star about the tool, whose place is -1.
+Line: TypeAlias = tuple[int, int, str]
+"""The places of its ends, and the axes that drive it; the place of the tool is -1."""
+
+
+def wire_frame_of(kinematics: Kinematics) -> tuple[Parts, tuple[Line, ...]]:
+    """The points of a machine at any pose, and the lines between them: the links of a chain, or the parts of a loop.
+
+    Raises `DescriptionError` if nothing that is drawn moves with a joint.
     """
+    parts = (parts_of if kinematics.mechanism.chain is None else links_of)(kinematics)
+    return parts, tuple(line for line in lines_of(parts.shape) if line[0] != line[1])
+
+
+def lines_of(shape: Mapping[str, Any]) -> tuple[Line, ...]:
+    """The lines of a loop: arms (a point for one that bars draw), ways of carriages, rods, and the plate as a star."""
     cranks = shape["cranks"]
     arms = [(c["centre"], end if c["isHeld"] else c["centre"], c["joint"]) for c in cranks for end in c["ends"]]
     ways = [(rail["origin"], rail["at"], rail["joint"]) for rail in shape["rails"]]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from derive.description.mechanism import Parameter
 from derive.emit.inputs import Inputs
+from derive.emit.interface import read_by
 from derive.equations.windows import Window, windows
 from derive.ir.program import Let, Output, Program, Require, Solve, Statement
 from derive.ir.symbols import symbols_of
@@ -69,6 +70,15 @@ def _own_setup(kin: Kinematics, read: Collection[str]) -> Program:
             wanted |= statement.reads()
             body.append(statement)
     return replace(kin.setup, body=tuple(reversed(body)), outputs=outputs)
+
+
+def with_constants(program: Program, kin: Kinematics, known: Collection[str]) -> Program:
+    """The program with the statements of the setup program in front that compute the constants which are not known."""
+    constants = read_by(program) - set(known)
+    if not constants:
+        return program
+    before = [s for s in setup_of(kin, constants).program.body if not isinstance(s, Require)]
+    return replace(program, body=(*before, *program.body))
 
 
 def refused_inputs(require: Require, inputs: Inputs) -> tuple[str, list[str]]:

@@ -30,6 +30,7 @@ GUIDES = {
         "GALLERY",
         "CALIBRATION",
         "CODESYS",
+        "FIRST_PROJECT",
         "LINUXCNC",
         "C",
         "JAVASCRIPT",

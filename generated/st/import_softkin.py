@@ -25,6 +25,7 @@ VERSION = "0.1.0.0"
 LIBRARIES = ["SM3_Transformation", "SM3_Math", "SM3_Error"]
 
 PICTURES = "pictures"
+SAMPLES = "samples"  # programs for a project with an axis group, and no part of the library
 
 # Not documented: what the accessors are called that create_property makes.
 GETTER, SETTER = "Get", "Set"
@@ -135,6 +136,8 @@ def import_all(project, source):
     root = folder_below(project, TITLE)
     count = 0
     for name in sorted(os.listdir(source)):
+        if name == SAMPLES:
+            continue
         directory = os.path.join(source, name)
         files = sorted(f for f in os.listdir(directory) if f.endswith(".st")) if os.path.isdir(directory) else []
         for file in files:

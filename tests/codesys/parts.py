@@ -6,9 +6,12 @@ from dataclasses import dataclass, field
 
 from derive.command.catalogue import OUTPUT
 
-FILES = {
+_EVERY = {
     str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
 }
+SAMPLES = {name.split("/")[1].removesuffix(".st"): t for name, t in _EVERY.items() if name.startswith("samples/")}
+"""The sample projects by their blocks: their programs have the same names, and are no part of a library."""
+FILES = {name: text for name, text in _EVERY.items() if not name.startswith("samples/")}
 _RULER = re.compile(r"// ==== ([A-Z_]+) (\w+(?:\.\w+)?): (declaration|implementation) =+")
 _END = re.compile(r"(?:(?:GET|END_\w+)  )?// =+")
 

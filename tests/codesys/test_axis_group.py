@@ -18,78 +18,15 @@ SMC_ERROR_OF_THE_GROUP = "SMC_TRAFO_INVALID_CONSTELLATION"
 COUPLED = (Path(__file__).parent / "coupled.st").read_text(encoding="utf-8")
 
 
-def _demo() -> tuple[Any, Any]:
-    """The program of the guide and its group, on stand-ins."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Demo"))
-    needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
-    texts = {
-        "robotics": ROBOTICS,
-        "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n",
-        "PRG_Demo": program,
-    }
-    library = compile_st({**needed, **renamed(texts)})
-    return library.new("PRG_Demo"), library.constant("Scara")
-
-
-def test_the_demo_moves_a_group() -> None:
-    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then
-    jogging.
-    """
-    demo, group = _demo()
-    done: list[tuple[int, float, float, int]] = []
-    for _ in range(60):
-        demo()
-        place = group.position.c
-        elbow = group.kinConfig.abyData[0]
-        if (now := (group.moved, place.X, place.Y, elbow)) not in done[-1:]:
-            done.append(now)
-    assert done == [
-        (0, 0.0, 0.0, 0), (1, 400.0, 100.0, 0), (2, 400.0, -100.0, 0), (2, 400.0, -100.0, 2), (1, 400.0, -100.0, 2)
-    ]  # fmt: skip
-    arms = Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
-    for _, x, y, byte in done[1:]:  # within reach of the arms that the guide names
-        arms.inverse(((x, y, 0.0), np.eye(3)), (byte or 1, 0, 0))
-    assert not group.refused and demo.iStep == 100 and not demo.jog.Busy
-    demo.xJog = True
-    demo.axForward[0] = True
-    demo()
-    assert demo.jog.Busy and group.moved == 3
-
-
-STEPS = (0, 10, 20, 30, 40, 100)
-
-
-@pytest.mark.parametrize("step", STEPS)
-def test_the_demo_ends_in_its_error_step_and_begins_again(step: int) -> None:
-    """A fault in any step stops every block; a reset begins from power again, and the moves are made."""
-    demo, group = _demo()
-    for _ in range(80):
-        demo()
-        if demo.iStep == step:
-            break
-    group.fault, demo.xJog = SMC_ERROR_OF_THE_GROUP, step == 100
-    for _ in range(6):
-        demo()
-    moved = group.moved
-    assert demo.iStep == 900 and demo.iFailed == step and demo.eError == SMC_ERROR_OF_THE_GROUP and not demo.xJog
-    for _ in range(20):
-        demo()
-    assert demo.iStep == 900 and group.moved == moved, "it waits, and moves nothing"
-    demo.xReset = True
-    for _ in range(80):
-        demo()
-    assert demo.iStep == 100 and not demo.xReset and demo.eError == "SMC_NO_ERROR" and not group.refused
-
-
 def _asking(*blocks: str, name: str = "PRG_Ask", **texts: str) -> tuple[Library, Any, Any]:
     """The program that asks a group, its library, and the group, which has these blocks and is enabled."""
     (program,) = (closed(p) for p in PROGRAMS if p.startswith(f"PROGRAM {name}\n"))
     wanted = tuple(f"/{name}." for name in blocks)
     needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
-    group = "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
+    group = "VAR_GLOBAL\n  Machine : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
     own = {"robotics": ROBOTICS, "Groups": group, name: program, **texts}
     library = compile_st({**needed, **renamed(own)})
-    found = library.constant("Scara")
+    found = library.constant("Machine")
     found.isEnabled = True
     return library, library.new(name), found
 

@@ -13,7 +13,7 @@ from xsdata.formats.dataclass.parsers.config import ParserConfig
 from derive.command.catalogue import OUTPUT
 from derive.emit.plcopen.document import document
 from derive.emit.plcopen.objects import Object, objects_of
-from tests.codesys.parts import FILES, Part, all_parts, parts_of
+from tests.codesys.parts import FILES, SAMPLES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables
 from tests.harness.library import compile_st
@@ -40,7 +40,8 @@ def errors(text: str) -> list[str]:
 
 def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
     found = {str(p.relative_to(ROOT)) for p in ROOT.rglob("*.xml")}
-    assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"}
+    samples = {f"samples/{name}.xml" for name in SAMPLES}
+    assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"} | samples
     assert len(UNITS) >= 30
 
 
@@ -116,12 +117,16 @@ def test_a_mechanism_alone_compiles(unit: str) -> None:
 
 
 def test_an_object_has_one_identifier_everywhere() -> None:
-    """An object has the same identifier in every file, and no two objects share one."""
+    """An object has the same identifier in every file, and no two objects share one; a flat block has the methods of
+    its base beside those that it has everywhere.
+    """
     everything = identifiers(parse(EVERYTHING))
     assert len(set(everything.values())) == len(everything) > 600
     assert everything == listed(parse(EVERYTHING))
     for unit in UNITS[:3]:
-        assert identifiers(parse(ROOT / f"{unit}.xml")).items() <= everything.items()
+        alone = identifiers(parse(ROOT / f"{unit}.xml"))
+        assert {name: everything.get(name, one) for name, one in alone.items()} == alone
+        assert {name.split(".")[0] for name in alone} <= set(everything)
 
 
 @pytest.mark.parametrize("unit", ["scara/Kin_Scara4_ZCcoupled_Type1", "parallel/Kin_Hexapod"])
@@ -172,7 +177,7 @@ def _only(element: Element, path: str) -> Element:
 
 def test_what_the_standard_has_no_element_for() -> None:
     """Interfaces, pragmas and private methods, in the elements that CODESYS writes."""
-    root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
+    root = parse(EVERYTHING)
     pou = _only(root, ".//p:pou[@name='Softkin_Scara2_Z']")
     implemented = [e.text for e in _only(pou, "p:interface//p:Inheritance")]
     assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 8

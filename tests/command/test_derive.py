@@ -68,7 +68,7 @@ def test_one_command_gives_everything_that_a_user_of_the_machine_needs(scara: Fo
         "python/LICENSE", "python/pyproject.toml", "python/README.md", "python/my_scara/__init__.py",
         "python/my_scara/myscara.py", "python/my_scara/py.typed", "st/own/MyScara.st", "st/own/MyScara.xml",
         "st/softkin.xml", "st/pictures/MyScara.png", "st/pictures/MyScara.svg", "st/selftest/MyScara_SelfTest.st",
-        "st/import_softkin.py",
+        "st/import_softkin.py", "st/samples/MyScara.st", "st/samples/MyScara.xml",
     } <= names  # fmt: skip
     assert not [n for n in names if "softkin/" in n and n.startswith("python")]
     class_text = (scara.path / "build/python/my_scara/myscara.py").read_text()

@@ -22,7 +22,7 @@ def fits(given: types.Type, wanted: types.Type) -> bool:
     if isinstance(given, types.String) and isinstance(wanted, types.String):
         return given.length <= wanted.length
     if isinstance(given, types.Address) and isinstance(wanted, types.Pointer):
-        return _memory_of_reals(given.of) and _memory_of_reals(wanted.target)
+        return _memory_of_reals(given.of) and _memory_of_reals(wanted.target) or _of_one_struct(given.of, wanted.target)
     return False
 
 
@@ -35,6 +35,12 @@ def _refers(given: types.Type, wanted: types.Interface) -> bool:
 
 def _memory_of_reals(of: types.Type) -> bool:
     return isinstance(of, types.Opaque) or (isinstance(of, types.Array) and of.element == types.LREAL)
+
+
+def _of_one_struct(given: types.Type, wanted: types.Type) -> bool:
+    """Whether both are arrays of the same structure: a library that is given such a pointer is told their number."""
+    are_arrays = isinstance(given, types.Array) and isinstance(wanted, types.Array)
+    return are_arrays and isinstance(given.element, types.Struct) and given.element == wanted.element
 
 
 def common(left: types.Type, right: types.Type) -> types.Type | None:

@@ -14,7 +14,8 @@ END_FUNCTION_BLOCK
 """
 VARIABLES = """ x : LREAL; b : BOOL; n : DINT; u : UINT; i : INT; y : BYTE; line : STRING(10);
  arr : ARRAY[0..2] OF LREAL; m : SMC_Matrix3; fr : SMC_Frame; a : AXISPOS_REF; e : SMC_ERROR;
- p : POINTER TO ARRAY[0..8] OF LREAL; os : OrientationSpace;"""
+ p : POINTER TO ARRAY[0..8] OF LREAL; os : OrientationSpace;
+ vs : ARRAY[0..2] OF SMC_Vector3D; frames : POINTER TO ARRAY[0..0] OF SMC_Frame;"""
 CALLEE = """
 FUNCTION Callee : LREAL
 VAR_INPUT x : LREAL; END_VAR
@@ -86,6 +87,7 @@ BODIES = {
     "wrong number of indices": ("arr[0, 1] := 1.0;", "needs 1 indices"),
     "dereference of a number": ("x := n^;", "no pointer"),
     "pointer to the wrong memory": ("p := ADR(n);", "does not fit"),
+    "pointer to an array of another structure": ("frames := ADR(vs);", "does not fit"),
     "number to pointer": ("p := 0;", "does not fit"),
     "too few arguments": ("x := Callee(1.0);", "argument v of Callee is missing"),
     "too many arguments": ("x := Callee(1.0, fr.vT, x);", "too many arguments"),

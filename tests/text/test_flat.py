@@ -11,7 +11,9 @@ import pytest
 from derive.description.mechanism import Mechanism
 from derive.emit.plcopen.objects import Object, as_text, objects_of
 from derive.emit.softmotion.library import flattened
-from tests.codesys.plcopen_reader import NAMESPACE
+from tests.codesys.parts import parts_of
+from tests.codesys.plcopen_reader import NAMESPACE, wholes
+from tests.codesys.plcopen_reader import parse as parse_xml
 from tests.codesys.test_plcopen import errors
 from tests.harness import ast
 from tests.harness.blark_grammar import parse_with_blark
@@ -25,7 +27,7 @@ from tests.text.controller import OK, Controller
 from tests.text.pairs import POSITION_KINEMATICS, comparisons_of, pairs_of
 from tests.text.test_portable import lint
 from tests.text.test_profiles import BLOCK, rendered
-from tests.text.units import compiled, file_of, shared_texts, text_of
+from tests.text.units import FOLDER, compiled, file_of, shared_texts, text_of
 
 BASE = "Softkin_Kinematics"
 
@@ -100,6 +102,18 @@ def test_a_flat_block_is_whole_and_clean(name: str) -> None:
     assert len(members) == len(flat.members)
     assert members == {m.name: m for m in base().members} | own
     assert lint(text) == []
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_the_file_of_a_mechanism_has_the_flat_block(name: str) -> None:
+    """What an import of one mechanism brings needs no base, and is this text."""
+    mechanism = MECHANISMS[name]
+    read = wholes(parse_xml(FOLDER / mechanism.family / f"{mechanism.block_name}.xml"))
+    assert BASE not in read
+    wanted = {(p.kind, p.path): p for p in parts_of(flat_text(mechanism))}
+    wholly = (p for own in {path.split(".")[0] for _, path in wanted} for p in (read[own].own, *read[own].members))
+    texts = {(p.kind, p.path): (p.declaration, p.implementation) for p in wholly if p.kind != "GET"}
+    assert texts == {key: (p.declaration, p.implementation) for key, p in wanted.items() if p.kind != "GET"}
 
 
 @pytest.mark.parametrize("name", KINDS)

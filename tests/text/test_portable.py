@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import pytest
 
-from derive.command.catalogue import OUTPUT
+from tests.codesys.parts import FILES, SAMPLES
 from tests.harness import ast, stubs
 from tests.harness.contract import INTERFACES
 from tests.harness.lexical import SYSTEM, Token, tokens
@@ -25,6 +25,7 @@ FORBIDDEN = set(
 _MEMORY = {"POINTER", "ADR"}
 """Words that belong into the helpers that touch the opaque matrix, and nowhere else."""
 _HELPERS = {"Softkin_ReadMatrix", "Softkin_WriteMatrix"}
+_EVERY = FILES | {f"samples/{name}.st": text for name, text in SAMPLES.items()}
 _WORDS = (KEYWORDS | {"GET", "END_GET", "LREAL_TO_INT", "INT_TO_LREAL"}) - {"ERROR"}
 _LIBRARY_BOUND = "0..(SM3M.SMC_MAX_VEC_DIM - 1)"
 _DECLARED = re.compile(r"^  (\w+) : ([^;]*);")
@@ -127,9 +128,6 @@ def _declarations(text: str, library_names: set[str]) -> Iterator[Violation]:
             yield Violation(number, f"{name} is a name of the language, of C or of a library")
 
 
-FILES = {
-    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
-}
 _OWN = parse(FILES["softkin/Softkin_MatrixOrder.st"], "Softkin_MatrixOrder")
 LIBRARY = [declared for space, text in stubs.texts(31).items() for declared in parse(text, space)]
 
@@ -160,10 +158,10 @@ def test_every_object_is_portable(file: str) -> None:
     assert lint(FILES[file]) == []
 
 
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", _EVERY)
 def test_no_line_is_longer_than_a_page_is_wide(file: str) -> None:
     """No line of Structured Text is longer than 110 columns."""
-    assert [line for line in FILES[file].split("\n") if len(line) > 110] == []
+    assert [line for line in _EVERY[file].split("\n") if len(line) > 110] == []
 
 
 def test_the_lint_knows_enough() -> None:

@@ -35,9 +35,9 @@ def kinematics() -> Kinematics:
 
 
 def files_of(profile: str | None, one: Kinematics) -> dict[str, str]:
-    """All files of Structured Text for one mechanism."""
+    """All files of Structured Text for one mechanism, without its sample project, which needs an axis group."""
     language = StructuredTextFiles(profile)
-    return language.files([language.part(one)])
+    return {n: t for n, t in language.files([language.part(one)]).items() if not n.startswith("samples/")}
 
 
 @lru_cache

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from derive.description.mechanism import DescriptionError
-from derive.drawing.parts import lines_of, links_of, parts_of
+from derive.drawing.parts import wire_frame_of
 from derive.emit.c.description import inputs
 from derive.emit.c.functions import Function
 from derive.emit.c.printer import laid_out, list_of
 from derive.emit.c.program import function_lines
-from derive.emit.interface import POSE, Entry, read_by
-from derive.emit.setup import setup_of
-from derive.ir.program import Require
+from derive.emit.interface import POSE, Entry
+from derive.emit.setup import with_constants
 from derive.kinematics.kinematics import Kinematics
 from derive.report.reasons import reasons_of
 
@@ -32,17 +31,15 @@ class WireFrame:
 def wire_frame(kin: Kinematics, module: str) -> WireFrame | None:
     """The first lines of the drawing, as many as a controller takes; None if the machine has no drawing."""
     try:
-        parts = links_of(kin) if kin.mechanism.chain is not None else parts_of(kin)
+        parts, drawn = wire_frame_of(kin)
     except DescriptionError:  # a drawing is no part of the proof
         return None
     axes = tuple(joint.axis.name for joint in kin.mechanism.joints)
     summary, results = "The points of the drawing.", (("points", parts.names),)
     entry = Entry("parts", summary, parts.program, (("axes", axes), *POSE), results)
-    constants = read_by(parts.program) - entry.given - inputs(kin).names.keys()
-    if constants:  # the function has parameters alone, and computes what depends on them
-        before = [s for s in setup_of(kin, constants).program.body if not isinstance(s, Require)]
-        entry = replace(entry, program=replace(parts.program, body=(*before, *parts.program.body)))
+    # the function has parameters alone, and computes what depends on them
+    entry = replace(entry, program=with_constants(parts.program, kin, entry.given | inputs(kin).names.keys()))
     stored = {inner: f"k->{name}" for inner, name in inputs(kin).names.items()}
     lines = function_lines(Function(entry), f"{module}_parameters", stored, reasons_of(kin))
-    edges = [list_of(map(str, ends)) for *ends, _ in lines_of(parts.shape) if ends[0] != ends[1]]
+    edges = [list_of(map(str, ends)) for *ends, _ in drawn]
     return WireFrame("\n".join(laid_out(lines)), tuple(edges[:MOST_EDGES]))

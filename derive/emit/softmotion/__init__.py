@@ -13,5 +13,6 @@ instructions: what a call takes on processors of controllers, as it was counted
 library: all files: text, PLCopenXML and the import script
 methods: the methods of a block, and the spelling of the values that they read
 pictures: the pictures in the descriptions of blocks, and the overview
+sample: a sample project: a program that moves the machine, a panel to jog it, and its drawing that moves
 self_test: the self-test of a block, as tables of calls and answers
 """

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import ClassVar
 
 from jinja2 import Environment
 
+from derive.description.mechanism import DescriptionError
 from derive.emit.language import GENERATED, TEMPLATES, Part, environment, runtime
 from derive.emit.plcopen import document as plcopen
 from derive.emit.plcopen.objects import Object, as_text, needed, objects_of, uses
@@ -20,6 +22,8 @@ from derive.emit.softmotion.description import description
 from derive.emit.softmotion.inputs import inputs
 from derive.emit.softmotion.methods import methods_of
 from derive.emit.softmotion.pictures import row_of
+from derive.emit.softmotion.sample import FOLDER as SAMPLES
+from derive.emit.softmotion.sample import sample_of
 from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
 from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.softmotion.self_test import TOLERANCE, test_of
@@ -68,12 +72,16 @@ class StructuredTextFiles:
         if len(kinematics.mechanism.joints) > most_axes(self.profile):
             return None
         block = block_of(kinematics, contract)
-        found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates), "test": None}
+        found: Part = {"row": row_of(kinematics), "text": _unit(kinematics, block, contract, templates)}
+        found |= {"test": None, "sample": None}
         found["notes"] = list(inputs(kinematics).notes)
         test = test_of(kinematics, block)
         if test is not None:
             text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)
             found["test"] = {"name": test.name, "block": test.block, "text": text}
+        sample = sample_of(kinematics, block, contract)
+        if sample is not None:
+            found["sample"] = templates.get_template("sample.st.j2").render(contract.spelling, sample=sample)
         return found
 
     def files(self, parts: Sequence[Part]) -> dict[str, str]:
@@ -83,8 +91,10 @@ class StructuredTextFiles:
         contract, templates = load(self.profile), _templates()
         objects = dict(_objects(parts, contract, templates))
         refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
-        files = {f"{path}.st": f"{_PREAMBLE}\n{as_text(inside)}" for path, inside in objects.items()}
-        files |= {f"{path}.xml": text for path, text in _documents(objects)}
+        samples = dict(_samples(parts, objects, contract))
+        files = {f"{path}.st": f"{_PREAMBLE}\n{as_text(inside)}" for path, inside in (objects | samples).items()}
+        files |= {f"{path}.xml": text for path, text in _documents(objects, contract)}
+        files |= {f"{p}.xml": plcopen.document(p.split("/")[1], GENERATED, {SAMPLES: s}) for p, s in samples.items()}
         rows = sorted((part["row"] for part in parts), key=lambda row: (row["family"], row["block"]))
         for name in ("import_softkin.py", "README.md"):
             files[name] = templates.get_template(f"{name}.j2").render(
@@ -92,6 +102,7 @@ class StructuredTextFiles:
                 overview=rows,
                 own=contract.own_interface,
                 flat=contract.is_flat,
+                sampled=bool(samples),
                 teaches=f"{_SHARED}/Softkin_Teach" in objects,
             )
         return dict(sorted(files.items()))
@@ -147,12 +158,35 @@ def _self_tests(
         yield f"{SELF_TESTS}/{SELF_TEST_PROGRAM}", objects_of(text)
 
 
-def _documents(objects: Mapping[str, Sequence[Object]]) -> Iterator[tuple[str, str]]:
-    """The PLCopenXML files: one with all objects, and one for every mechanism with the objects that it needs."""
+def _samples(
+    parts: Sequence[Part], objects: Mapping[str, tuple[Object, ...]], contract: Contract
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """The objects of the sample projects: of the catalogue those that the contract names, and of a single machine its
+    own. Each is for a project of its own: their programs have the same names. A machine whose block has the name of
+    something in its sample comes without.
+    """
+    wanted = contract.spelling["samples"]["blocks"]
+    for part in parts:
+        block = part["row"]["block"]
+        if part["sample"] and (len(parts) == 1 or block in wanted):
+            inside = {f"{SAMPLES}/{block}": objects_of(part["sample"])}
+            with suppress(DescriptionError):
+                refuse_clashes({**objects, **inside})
+                yield from inside.items()
+
+
+def _documents(objects: Mapping[str, Sequence[Object]], contract: Contract) -> Iterator[tuple[str, str]]:
+    """The PLCopenXML files: one with all objects, and one for every mechanism with the objects that it needs. There it
+    is flat: it has the methods of the base block itself.
+    """
+    base = f"{_SHARED}/{contract.spelling['base']['name']}"
     yield "softkin", plcopen.document("Softkin", GENERATED, _by_folder(objects))
     for path in objects:
         if not path.startswith((f"{_SHARED}/", f"{SELF_TESTS}/")):
-            chosen = {p: objects[p] for p in needed(path, objects)}
+            alone = dict(objects)
+            if base in objects and not contract.transformations:
+                alone[path] = flattened(objects[path], objects[base][0])
+            chosen = {p: alone[p] for p in needed(path, alone)}
             yield path, plcopen.document("Softkin", GENERATED, _by_folder(chosen))
 
 

@@ -72,7 +72,7 @@ def _given(parameters: Sequence[Parameter], names: Mapping[str, str], test: Self
     found = {}
     for parameter in parameters:
         given = parameter_input(parameter, names[parameter.name])
-        values = tuple(_value(parameter, machine) for machine in test.machines)
+        values = tuple(stated(parameter, machine) for machine in test.machines)
         if set(values) != {given.default}:
             found[given.name] = values
     return found
@@ -90,7 +90,8 @@ def _inputs(given: Mapping[str, tuple[str, ...]]) -> list[str]:
     return packed([f"{piece}," for piece in pieces[:-1]] + [f"{piece});" for piece in pieces[-1:]], _LINE_OF_A_CALL)
 
 
-def _value(parameter: Parameter, machine: Mapping[str, float]) -> str:
+def stated(parameter: Parameter, machine: Mapping[str, float]) -> str:
+    """The value that a machine gives a parameter, as a literal."""
     value = machine[parameter.name]
     if parameter.role is Role.FLAG:
         return "TRUE" if value else "FALSE"

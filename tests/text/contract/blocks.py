@@ -2,14 +2,11 @@
 
 from functools import lru_cache
 
-from derive.command.catalogue import OUTPUT
 from derive.emit.st.contract import load
+from tests.codesys.parts import FILES
 from tests.harness import ast
 from tests.harness.library import Library, compile_st
 
-FILES = {
-    str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))
-}
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
 

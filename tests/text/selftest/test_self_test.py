@@ -9,6 +9,7 @@ import pytest
 
 from bench.counting import counting_library
 from derive.description.mechanism import Mechanism
+from tests.codesys.parts import FILES
 from tests.harness import ast
 from tests.harness.library import Library, compile_st
 from tests.harness.parse import parse
@@ -200,8 +201,7 @@ def with_faults(mechanism: Mechanism) -> Library:
 @pytest.mark.parametrize("order", ["rows", "columns"])
 def test_all_blocks_pass_one_after_the_other(order: str) -> None:
     """The program as a controller runs it: never more than a single case in a cycle."""
-    everything = {str(p): p.read_text(encoding="utf-8") for p in sorted(FOLDER.rglob("*.st"))}
-    program = compile_st(everything, order).new(PROGRAM)
+    program = compile_st(FILES, order).new(PROGRAM)
     program.udiOperations = UNBOUNDED
     total = sum(counts(name) for name in SELF_TESTS if name != f"{PROGRAM}.st")
     for _ in range(total):
