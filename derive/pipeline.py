@@ -161,7 +161,7 @@ def derive_one(
         report("draw", "")
         if len(mechanism.joints) <= most_axes(profile):
             drawn, undrawn = _pictures(whole)
-            whole = replace(whole, undrawn=undrawn)
+            whole = replace(whole, undrawn=undrawn, has_choices=len(drawn) > 2)
         report("draw", whole.undrawn or ", ".join(drawn) or "nothing: it has no block")
     found = ((language.name, language.part(whole)) for language in outputs)
     parts = {name: part for name, part in found if part is not None}
@@ -258,7 +258,7 @@ def _drawings(built: Sequence[Built], outputs: Sequence[Language]) -> Iterator[t
     """The drawings beside the classes of the Python package, with their paths, if blocks are drawn, too."""
     for language in (one for one in outputs if isinstance(one, NamedPackage) or one is python):
         for one in built:
-            for data in (data for n, data in one.pictures.items() if n.endswith(".svg")):
+            for data in [data for n, data in one.pictures.items() if n.endswith(".svg")][:1]:  # that of the machine
                 yield f"{language.name}/{language.drawing(one.parts[language.name])}", data
 
 

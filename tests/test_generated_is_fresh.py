@@ -41,7 +41,7 @@ def test_every_mechanism_agrees(entry: Entry, generation: Generation) -> None:
         assert found.missed[0] <= found.missed[1] / 100
     elif not (entry[1].rods or entry[1].drives):
         inclined = any(p.role is Role.ANGLE and p.default is None for p in entry[1].parameters)
-        assert evidence.poses == 144 or (inclined and evidence.poses >= 90)  # at 5 degrees few poses are regular
+        assert evidence.poses == 144 or (inclined and evidence.poses >= 130)  # at 5 degrees few poses are regular
         assert found.solutions == 2 ** len(entry[1].branches)
     else:  # random dimensions may form no loop, and some working modes lie on the other assembly side
         assert evidence.poses >= 72

@@ -115,10 +115,11 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
     for branch in mechanism.branches:
         signs = ", ".join(f"{n}={s:+d}" for n, s in zip(branch.names, branch.signs, strict=True))
         if branch.is_crossing and mechanism.search is not None:
-            joint, (first, second) = mechanism.search.joint.name, branch.names
+            joint, bytes_ = mechanism.search.joint.name, zip(branch.signs, (1, 2), branch.names, strict=True)
+            first, second = (f"{byte} {name}" for _, byte, name in sorted(bytes_, reverse=True))
             yield f'  crossing("{branch.name}", {signs})'
-            rises = f"whether the residual rises (1 {first}) or falls (2 {second}) with {joint} at the root"
-            sign = f"whether the determinant of the Jacobian is positive (1 {first}) or negative (2 {second})"
+            rises = f"whether the residual rises ({first}) or falls ({second}) with {joint} at the root"
+            sign = f"whether the determinant of the Jacobian is positive ({first}) or negative ({second})"
             yield f"       {sign if mechanism.search.is_eliminated else rises};"
             yield f"       of the roots of one branch the answer is the one whose {joint} is nearest to the reference"
             continue

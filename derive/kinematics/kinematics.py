@@ -177,6 +177,8 @@ class Kinematics:
     """The cases of the self-test on the controller; None until they are made."""
     undrawn: str = ""
     """The reason why there is no drawing; empty if there is one."""
+    has_choices: bool = False
+    """Whether a second drawing shows the choices of the configuration."""
     further: Mapping[str, int] = field(default_factory=dict)
     """The inputs that got another name inside because the derivation uses theirs: see `with_inner_names`."""
 

@@ -17,6 +17,7 @@ MECHANISM = Mechanism(
     summary="H-bot: two motors move a carriage in the plane through one belt.",
     joints=(A1, A2),
     chain=Tx(CARRIAGE_X) * Ty(CARRIAGE_Y),
+    belt="H",
     task=Task("xy"),
     limited=(
         limited("x", CARRIAGE_X, "X of the carriage", angle=False),

@@ -10,6 +10,7 @@ from itertools import islice
 
 import numpy as np
 
+from derive.description.mechanism import Branch, Mechanism
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics, Reals
 from derive.report.reference_calls import Machine, branches_at, forward, forward_at, machine_with
@@ -37,6 +38,17 @@ def with_meanings(kinematics: Kinematics) -> Kinematics:
         return kinematics
     mechanism = kinematics.mechanism
     return replace(kinematics, mechanism=replace(mechanism, notes=(*mechanism.notes, *notes)))
+
+
+def meanings_of_crossing(mechanism: Mechanism, branch: Branch) -> tuple[str, str]:
+    """What the byte of a root search means, by its two names: how the residual, or the Jacobian, is at the root."""
+    assert mechanism.search is not None
+    of = f"the residual {{}} with {mechanism.search.joint.name} at the root", ("rises", "falls")
+    if mechanism.search.is_eliminated:
+        of = "the determinant of the Jacobian is {}", ("positive", "negative")
+    text, (above, below) = of
+    first, second = (above, below) if branch.signs[0] > 0 else (below, above)
+    return text.format(first), text.format(second)
 
 
 def _assembly(kinematics: Kinematics) -> Iterator[str]:

@@ -129,8 +129,9 @@ def page(machine: Mechanism) -> Iterator[str]:
     differing = (p for p in cls.PARAMETERS if nominal.get(p.name, p.default) != p.default)
     needed = ", ".join(f"{p.name}={nominal[p.name]}" for p in differing)
     yield from (f"# {machine.name}", "", str(cls.__doc__).split("\n")[0], "")
-    if picture_of(machine):
-        yield from (f"![{machine.name}, drawn]({picture_of(machine)})", "")
+    for of, what in (("", "drawn"), ("_Configuration", "its configurations")):
+        if picture_of(machine, of):
+            yield from (f"![{machine.name}, {what}]({picture_of(machine, of)})", "")
     yield from ("```python", "import softkin", "", f"robot = softkin.{cls.__name__}({needed})", "```", "")
     yield from ("## Parameters", "", "| parameter | meaning | unit | nominal |", "|---|---|---|---|")
     for p in cls.PARAMETERS:
@@ -150,9 +151,9 @@ def module_of(cls: type) -> str:
     return f"generated/python/{cls.__module__.replace('.', '/')}.py"
 
 
-def picture_of(machine: Mechanism) -> str:
-    """The picture of a machine, from its page; nothing if it has none."""
-    path = BLOCKS / "pictures" / f"{machine.block_name}.svg"
+def picture_of(machine: Mechanism, of: str = "") -> str:
+    """The picture of a machine, or of its configurations, from its page; nothing if it has none."""
+    path = BLOCKS / "pictures" / f"{machine.block_name}{of}.svg"
     return f"../{path.as_posix()}" if (ROOT / path).is_file() else ""
 
 

@@ -20,7 +20,7 @@ from tests.mechanisms import catalogue
 DRIVEN = tuple(m for _, m in catalogue() if m.drives)
 STEADY = 0.15
 """The derivatives of loops at a regular pose are at least this part of their largest values."""
-GRID = 1441
+GRID = 181
 """Values at which a root of a loop is looked for."""
 
 
@@ -55,11 +55,19 @@ class Loop:
             return found[0], found[1 + sought]
 
         error, slope = (np.broadcast_to(v, (len(given), GRID)) for v in of(grid[None, :], given.real[:, None]))
-        sense = np.sign(error[:, 1:] - error[:, :-1])
-        crossing = (error[:, :-1] * error[:, 1:] <= 0) & (sense * self._sense(sought, constants) > 0)
-        start = grid[np.argmax(crossing, axis=1)] + (grid[1] - grid[0]) / 2
-        value = np.where(crossing.any(axis=1), start, np.nan).astype(given.dtype)
         own = self._sense(sought, constants)
+        # between two roots that are nearer than the grid the error has an extremum, at which it is asked, too
+        steep = np.where(slope[:, 1:] == slope[:, :-1], 1.0, slope[:, 1:] - slope[:, :-1])
+        inside = np.clip(-slope[:, :-1] / steep, 0.0, 1.0) * (grid[1] - grid[0]) + grid[:-1]
+        both = [(np.broadcast_to(grid, error.shape), error), (inside, of(inside, given.real[:, None])[0])]
+        places, error = (np.empty((len(given), 2 * GRID - 1)) for _ in both)
+        for k, (place, value) in enumerate(both):
+            places[:, k::2], error[:, k::2] = place, value
+        sense = np.sign(error[:, 1:] - error[:, :-1])
+        crossing = (error[:, :-1] * error[:, 1:] <= 0) & (sense * own > 0)
+        first = np.argmax(crossing, axis=1)[:, None]
+        start = np.take_along_axis((places[:, 1:] + places[:, :-1]) / 2, first, axis=1)[:, 0]
+        value = np.where(crossing.any(axis=1), start, np.nan).astype(given.dtype)
         for _ in range(8):
             error, slope = of(value, given)
             value = value - error / (own * slope)
@@ -104,8 +112,10 @@ class DrivenClosure(Closure):
         found, sizes = np.array(axes), np.where(self.turning, np.pi, self.reach)
         missing = np.tile([k in self.loops for k in range(axes.shape[1])], (len(axes), 1))
         while missing.any():
-            found = np.where(missing, self.axes(rng.uniform(-1.0, 1.0, axes.shape) * sizes), found)
-            missing &= ~np.isfinite(self.joints(found))
+            rows = missing.any(axis=1)
+            tried = self.axes((rng.uniform(-1.0, 1.0, axes.shape) * sizes)[rows])
+            found[rows] = np.where(missing[rows], tried, found[rows])
+            missing[rows] &= ~np.isfinite(self.joints(found[rows]))
         return found
 
     def slopes(self, axes: Array) -> Array:

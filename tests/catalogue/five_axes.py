@@ -86,7 +86,7 @@ def table_table_b(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return cc * x + sc * q[1], cc * q[1] - sc * x, z, rotation
 
 
-def about(axis: Sequence[float], angle: Array) -> Array:
+def _about(axis: Sequence[float], angle: Array) -> Array:
     """Rodrigues: the rotation about a unit vector, entry by entry."""
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     c, s = np.cos(angle), np.sin(angle)
@@ -99,7 +99,7 @@ def _inclined(p: Mapping[str, float]) -> tuple[float, float, float]:
     return 0.0, float(np.sin(np.radians(p["nutation"]))), float(np.cos(np.radians(p["nutation"])))
 
 
-def composed(*turns: Array) -> Array:
+def _product(*turns: Array) -> Array:
     """Rotations, entry by entry, one after the other."""
     return reduce(lambda a, b: np.einsum("ij...,jk...->ik...", a, b), turns)
 
@@ -118,27 +118,27 @@ def nutating_head_a(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
 
 def _forked(p: Mapping[str, float], q: Sequence[Array], axis: Sequence[float], across: Array) -> Pose:
     """The offsets of the fork and of the head are across its axis."""
-    fork, head = about((0, 0, 1), q[3]), about(axis, q[4])
+    fork, head = _about((0, 0, 1), q[3]), _about(axis, q[4])
     arm = np.einsum("ij...,j->i...", head, across * p["head_offset"] - (0, 0, p["pivot_length"]))
     tip = np.einsum("ij...,j...->i...", fork, arm + np.multiply.outer(across * p["fork_offset"], np.ones_like(q[3])))
-    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, composed(fork, head)))
+    return q[0] + tip[0], q[1] + tip[1], q[2] + tip[2], tuple(map(tuple, _product(fork, head)))
 
 
 def nutating_head_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    head, table = about(_inclined(p), q[3]), about((0, 0, 1), -q[4])
+    head, table = _about(_inclined(p), q[3]), _about((0, 0, 1), -q[4])
     tip = np.einsum("ij...,j->i...", head, [p["head_offset"], 0, -p["pivot_length"]])
     place = np.einsum("ij...,j...->i...", table, np.array([tip[k] + q[k] for k in range(3)]))
-    return *place, tuple(map(tuple, composed(table, head)))
+    return *place, tuple(map(tuple, _product(table, head)))
 
 
 def _two_tables(
     p: Mapping[str, float], q: Sequence[Array], outer: Sequence[float], inner: Sequence[float] = (0, 0, 1)
 ) -> Pose:
     """Tables one on the other, each turned back about its axis."""
-    carrier, table = about(outer, -q[3]), about(inner, -q[4])
+    carrier, table = _about(outer, -q[3]), _about(inner, -q[4])
     tip = np.einsum("ij...,j...->i...", carrier, np.array([q[0], q[1], q[2] - p["tool_length"]]))
     tip = np.array([tip[k] - p.get(f"pivot_{c}", 0.0) for k, c in enumerate("xyz")])
-    return *np.einsum("ij...,j...->i...", table, tip), tuple(map(tuple, composed(table, carrier)))
+    return *np.einsum("ij...,j...->i...", table, tip), tuple(map(tuple, _product(table, carrier)))
 
 
 def nutating_table(p: Mapping[str, float], q: Sequence[Array]) -> Pose:

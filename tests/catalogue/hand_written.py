@@ -11,8 +11,6 @@ import numpy as np
 from tests.catalogue.closure import Array
 from tests.catalogue.five_axes import (
     Pose,
-    about,
-    composed,
     dual_table,
     five_axes,
     gantry_head,
@@ -171,18 +169,6 @@ def _palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return ahead * np.cos(q[0]), ahead * np.sin(q[0]), z, q[0] + q[3]
 
 
-def _painter(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
-    """The wrist in the plane of the arm; axis A5 leans from axis A4, which is that of A6 where A5 is zero."""
-    lean, both = np.radians(p["wrist_angle"]), q[1] + q[2]
-    out = p["shoulder_offset"] + p["link_length_2"] * np.sin(q[1]) + p["link_length_3"] * np.cos(both)
-    up = p["base_height"] + p["link_length_2"] * np.cos(q[1]) - p["link_length_3"] * np.sin(both)
-    leaning, x, y, z = (float(np.cos(lean)), 0.0, -float(np.sin(lean))), (1, 0, 0), (0, 1, 0), (0, 0, 1)
-    turn = composed(*(about(axis, by) for axis, by in zip((z, y, x, leaning, x), (q[0], both, *q[3:]), strict=True)))
-    ahead = p["flange_length"] * turn[:, 0]
-    rotation = tuple(map(tuple, turn))
-    return out * np.cos(q[0]) + ahead[0], out * np.sin(q[0]) + ahead[1], up + ahead[2], rotation
-
-
 def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
     """The part turns from X to Y: the tool, seen from it, the other way."""
     return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
@@ -213,7 +199,6 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_NutatingTable_BC": nutating_table,
     "Softkin_NutatingHeadTable_BC": nutating_head_table,
     "Softkin_NutatingTable_AC": nutating_table_a,
-    "Softkin_Painter": _painter,
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,

@@ -1,8 +1,6 @@
 """What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace
 ends."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from tests.catalogue.closure import Array
@@ -13,8 +11,6 @@ RATHER_FAR = 0.4
 """How far (radians, or reaches) the search for another posture of the same pose starts from the first."""
 LEAST = 0.1
 SECOND_ORDER = 1e-3
-BESIDE, STEP = 0.4, 0.02
-"""How far (radians) from an end a self-motion may stop, and the steps in which that is followed."""
 
 
 def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
@@ -44,22 +40,6 @@ def is_free(machine: Machine, axes: Array) -> Array:
         apart = np.abs(distance(machine, joints, others)).max(axis=1)
         found |= is_solution & (apart > LEAST) & (apart < 3 * RATHER_FAR)
     return found
-
-
-def ends_beside(machine: Machine, axes: Array, frames: Sequence[Array]) -> bool:
-    """Whether a self-motion ends beside axis values: another pair of branches meets within `BESIDE` of some joint."""
-    for way in (1.0, -1.0):
-        joints, before = machine.closure.joints(axes[None]), np.zeros((1, axes.size))
-        signs = np.sign(machine.closure.indicators(joints))
-        for _ in range(round(BESIDE / STEP)):
-            motion = null_vectors(machine, joints / machine.closure.units + machine.closure.offsets)[0]
-            motion = motion * way if not before.any() else motion * np.sign((motion * before).sum())
-            joints, is_solution = ends_from(machine, joints + STEP * motion, *frames)
-            before = motion
-            changed = np.sign(machine.closure.indicators(joints)) * signs < 0
-            if is_solution.all() and changed.any(axis=1).all():
-                return True
-    return False
 
 
 def inward(machine: Machine, axes: Array) -> tuple[Array, Array]:

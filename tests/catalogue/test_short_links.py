@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from softkin import Status
 
-from derive.description.mechanism import Mechanism, Role
+from derive.description.mechanism import Mechanism
 from tests.catalogue.machines import LENGTHS, MECHANISMS, machine
 
 LINKED = tuple(
@@ -25,7 +25,6 @@ def test_a_boundary_pose_is_reached(linked: Mechanism) -> None:
         given = {
             p.name: min(10.0 ** rng.uniform(SHORTEST, LONGEST), p.high) for p in linked.parameters if p.role in LENGTHS
         }
-        given |= {p.name: p.nominal for p in linked.parameters if p.role is Role.ANGLE and p.default is None}
         one = machine(linked, f"lengths {count}", given)
         robot = one.changed(check_limits=False)
         shape = (POSES, len(robot.AXES))

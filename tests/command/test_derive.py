@@ -122,13 +122,13 @@ def test_one_wrong_file_stops_no_other(folder: Folder) -> None:
     folder.write("machines/d_rail.py", RAIL.replace('"Rail"', '"Other"'))
     said = folder.run("derive", "machines", "--out", "out")
     assert said.status == 2
-    first, second = said.err.splitlines()
+    first, second = (line for line in said.err.splitlines() if line.startswith("error:"))  # others: what takes long
     assert re.match(r"error: machines/b_wrong\.py:\d+: joint 'A2' occurs nowhere in the closure; use it in", first)
     assert re.match(r"error: machines/c_worse\.py:1: the description ends the program; let the file define", second)
     assert {n.split("/")[0] for n in folder.names("out")} == {"a_rail", "d_rail"}
     assert "2 of 4 derived, 2 refused" in said.out
     said = folder.run("derive", "machines", "--out", "other", "--no-keep-going")
-    assert said.status == 2 and said.err.count("\n") == 1
+    assert said.status == 2 and said.err.count("error:") == 1
     assert {n.split("/")[0] for n in folder.names("other")} == {"a_rail"}
 
 

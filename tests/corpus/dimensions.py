@@ -72,10 +72,6 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     "Softkin_NutatingTable_BC": {"pivot_x": 8.0, "pivot_z": 30.0, "tool_length": 110.0, "nutation": 50.0},
     "Softkin_NutatingHeadTable_BC": {"head_offset": 30.0, "pivot_length": 250.0, "nutation": 45.0},
     "Softkin_NutatingTable_AC": {"pivot_y": -12.0, "pivot_z": 35.0, "tool_length": 115.0, "nutation": 45.0},
-    "Softkin_Painter": {
-        "base_height": 520.0, "shoulder_offset": 190.0, "link_length_2": 800.0, "link_length_3": 920.0,
-        "flange_length": 140.0, "wrist_angle": 62.0,
-    },
     "Softkin_Palletizer": {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0,

@@ -21,10 +21,10 @@ from derive.drawing.drawing import Drawing, drawing_of, scene_at
 from derive.drawing.pose import Pose, drawn_pose, is_inside, nominal_machine, pose_at
 from derive.drawing.scene import Scene
 from derive.emit.picture import style
-from derive.emit.picture.canvas import ALIKE, WIDTH, elements
+from derive.emit.picture.canvas import ALIKE, elements
 from derive.emit.picture.ink import Mark
 from derive.emit.picture.machine import Machine as Sketch
-from derive.emit.picture.page import page
+from derive.emit.picture.page import pages
 from derive.emit.picture.view import Box
 from derive.kinematics.kinematics import Kinematics
 from derive.report.derived import Derived
@@ -59,11 +59,14 @@ def pictured(kinematics: Kinematics, names: Mapping[str, str]) -> Pictured:
         pose = None
     try:
         drawing = drawing_of(kinematics)
-        sheet = page(drawing, kinematics.mechanism.block_name, names)
+        sheets = pages(drawing, kinematics.mechanism.block_name, names)
     except Exception as problem:  # the formulas are proven without a drawing, whatever its error
         return Pictured(machine, pose, None, Markup(""), " ".join(str(problem).split()))
-    title = f"{kinematics.mechanism.block_name}: joints, axes and dimensions"
-    return Pictured(machine, pose, drawing, drawn(sheet.marks, WIDTH, sheet.height, title), "")
+    titles = (
+        f"{kinematics.mechanism.block_name}: {what}" for what in ("joints, axes and dimensions", "configurations")
+    )
+    both = [drawn(s.marks, s.width, s.height, title) for s, title in zip(sheets, titles, strict=False)]
+    return Pictured(machine, pose, drawing, Markup("").join(both), "")
 
 
 @dataclass(frozen=True)

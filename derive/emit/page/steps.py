@@ -16,6 +16,7 @@ from derive.ir.program import Let, Statement
 from derive.ir.symbols import names_in
 from derive.kinematics.branches.assignment import Assignment
 from derive.kinematics.kinematics import Kinematics
+from derive.report.branch_meanings import meanings_of_crossing
 from derive.report.derived import FORMS, Derived, ExplainedStep, Route
 
 
@@ -156,10 +157,9 @@ def signs_of(kinematics: Kinematics, lines: Lines) -> Iterator[Sign]:
     """Every branch with its meaning: in words where the derivation named it, else the sign of its indicator."""
     for branch in kinematics.mechanism.branches:
         (first, second), (one, other) = branch.names, branch.meanings
-        words = f"In {first} {one}; in {second} {other}." if one else ""
         if branch.is_crossing:
-            one, other = ("rises", "falls") if branch.signs[0] > 0 else ("falls", "rises")
-            words = f"In {first} the residual of the search {one} with the searched joint; in {second} it {other}."
+            one, other = meanings_of_crossing(kinematics.mechanism, branch)
+        words = f"In {first} {one}; in {second} {other}." if one else ""
         condition = () if words else lines.math.lines(sp.Rel(branch.indicator, 0, ">" if branch.signs[0] > 0 else "<"))
         yield Sign(branch.name, branch.names, words, condition)
 

@@ -18,16 +18,17 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_rgb
 from matplotlib.ft2font import FT2Font, LoadFlags
 from matplotlib.path import Path as Outline
-from matplotlib.transforms import IdentityTransform
+from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 from PIL import Image
 
 from derive.emit.picture import style
 from derive.emit.picture.ink import Area, Line, Mark, Spot, Text
 
-WIDTH = 900
-_DOTS = 72
-"""Pixels in an inch: a pixel is then a point, and both formats have the same coordinates."""
+_FINE = 2
+"""Pixels of a PNG for each of them, for windows with small pixels."""
+_DOTS = 72.0
+"""Units of the page in an inch: a unit is then a point, and both formats have the same coordinates."""
 _PART = 64
 """A pixel in the units of a font."""
 _GROUND = 0.82
@@ -47,13 +48,13 @@ class Pictures:
     svg: bytes
 
 
-def pictures(marks: Sequence[Mark], height: int) -> Pictures:
-    """The pictures of the marks, drawn in their order on a page of WIDTH × height pixels."""
-    return Pictures(_png(marks, height), svg(marks, WIDTH, height))
+def pictures(marks: Sequence[Mark], width: int, height: int) -> Pictures:
+    """The pictures of the marks, drawn in their order on a page of this size."""
+    return Pictures(_png(marks, width, height), svg(marks, width, height))
 
 
-def _png(marks: Sequence[Mark], height: int) -> bytes:
-    page = _Page(height)
+def _png(marks: Sequence[Mark], width: int, height: int) -> bytes:
+    page = _Page(width, height)
     for mark in marks:
         page.draw(mark)
     picture = _in_colours(page.pixels, _palette(marks))
@@ -67,9 +68,10 @@ class _Page:
     time of a drawing.
     """
 
-    def __init__(self, height: int) -> None:
-        self._renderer = _RENDERER(WIDTH, height, _DOTS)
-        self._fill(((0.0, 0.0), (WIDTH, 0.0), (WIDTH, height), (0.0, height)))
+    def __init__(self, width: int, height: int) -> None:
+        self._scale = _FINE * style.SHOWN / width
+        self._renderer = _RENDERER(_FINE * style.SHOWN, round(self._scale * height), self._scale * _DOTS)
+        self._fill(((0.0, 0.0), (width, 0.0), (width, height + 1.0), (0.0, height + 1.0)))
 
     @property
     def pixels(self) -> Bytes:
@@ -95,14 +97,15 @@ class _Page:
         self._outline(pen, mark.points)
 
     def _write(self, text: Text) -> None:
-        letters, size = _letters(text.text, text.size, text.is_bold), text.size
+        letters, size = _letters(text.text, text.size, text.is_bold, self._scale), text.size
         left, base = text.at[0] - (0.0 if text.is_left else letters.width / 2), text.at[1] - MIDDLE * size
         if text.has_ground:
             right, low, high = left + letters.width + 1.0, base - 0.25 * size, base + 0.8 * size
             self._fill(((left - 1.0, low), (right, low), (right, high), (left - 1.0, high)), _GROUND)
         image = np.empty((*letters.covered.shape, 4), dtype=np.uint8)
         image[:, :, :3], image[:, :, 3] = _bytes_of(text.colour), letters.covered
-        self._renderer.draw_image(GraphicsContextBase(), round(left + letters.aside), round(base) + letters.up, image)
+        x, y = round(self._scale * left + letters.aside), round(self._scale * base) + letters.up
+        self._renderer.draw_image(GraphicsContextBase(), x, y, image)
 
     def _fill(self, corners: Sequence[Spot], share: float = 1.0) -> None:
         """Cover an area with paper."""
@@ -112,7 +115,7 @@ class _Page:
         self._outline(pen, (*corners, corners[0]), to_rgb(style.PAPER))
 
     def _outline(self, pen: Any, points: Sequence[Spot], fill: tuple[float, float, float] | None = None) -> None:
-        self._renderer.draw_path(pen, Outline(points, closed=fill is not None), IdentityTransform(), fill)
+        self._renderer.draw_path(pen, Outline(points, closed=fill is not None), Affine2D().scale(self._scale), fill)
 
 
 def _palette(marks: Iterable[Mark]) -> Bytes:
@@ -145,8 +148,8 @@ def _bytes_of(colour: str) -> tuple[int, int, int]:
 
 
 def text_width(text: str, size: float, is_bold: bool = False) -> float:
-    """The width of a text in pixels."""
-    return _letters(text, size, is_bold).width
+    """The width of a text."""
+    return _letters(text, size, is_bold, 1.0).width
 
 
 @dataclass(frozen=True)
@@ -154,6 +157,7 @@ class _Letters:
     """A text as pixels."""
 
     width: float
+    """Its width on the page."""
     covered: Bytes
     """How much of each pixel it covers, in rows from below."""
     aside: float
@@ -162,16 +166,16 @@ class _Letters:
 
 
 @cache
-def _letters(text: str, size: float, is_bold: bool) -> _Letters:
+def _letters(text: str, size: float, is_bold: bool, scale: float) -> _Letters:
     """A text as pixels. Cached: machines share texts."""
     font = _font(is_bold)
-    font.set_size(size, _DOTS)
+    font.set_size(size, scale * _DOTS)
     font.set_text(text, 0.0, flags=LoadFlags.NO_HINTING)
     font.draw_glyphs_to_bitmap(antialiased=True)
     width, height = font.get_width_height()
     covered = np.array(font.get_image())[::-1]
     top = math.ceil((height - font.get_descent()) / _PART)
-    return _Letters(width / _PART, covered, font.get_bitmap_offset()[0] / _PART, top - len(covered))
+    return _Letters(width / _PART / scale, covered, font.get_bitmap_offset()[0] / _PART, top - len(covered))
 
 
 @cache
@@ -190,9 +194,9 @@ MIDDLE = 0.35
 
 
 def svg(marks: Iterable[Mark], width: float, height: float) -> bytes:
-    """The marks as a file, on paper."""
+    """The marks as a file, on paper, as wide as it is shown."""
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{height:g}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{style.SHOWN}" height="{style.SHOWN * height / width:.5g}" '
         f'viewBox="0 0 {width:g} {height:g}" {ALIKE}>'
     )
     paper = f'<rect width="{width:g}" height="{height:g}" fill="{style.PAPER}"/>'

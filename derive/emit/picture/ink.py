@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,3 +85,17 @@ def arrow(points: Sequence[Vector], colour: str, width: float, size: float = 1.0
     short = last - along / max(float(np.linalg.norm(along)), 1e-9) * 0.8 * _HEAD * size
     far = np.linalg.norm(along) > _HEAD * size
     return [line([*points[:-1], short if far else last], colour, width), head(last, along, colour, size)]
+
+
+def moved(marks: Iterable[Mark], right: float, up: float) -> list[Mark]:
+    """The marks elsewhere on the page."""
+
+    def there(at: Spot) -> Spot:
+        return spot((at[0] + right, at[1] + up))
+
+    return [
+        replace(mark, at=there(mark.at))
+        if isinstance(mark, Text)
+        else replace(mark, points=(*map(there, mark.points),))
+        for mark in marks
+    ]

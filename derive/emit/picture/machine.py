@@ -24,6 +24,7 @@ from derive.emit.picture.naming import (
 )
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.symbols import (
+    BESIDE,
     FREE,
     angle_lines,
     bar,
@@ -40,9 +41,13 @@ from derive.emit.picture.symbols import (
 )
 from derive.emit.picture.view import Box, fitted
 
-_MARGINS = (78.0, 62.0, 84.0, 58.0)
+Margins = tuple[float, float, float, float]
+MARGINS: Margins = (78.0, 62.0, 84.0, 58.0)
 """Room for names around the machine: left, below, right, above."""
 _ANGLE_RADIUS = 46.0
+_SHIFTS, _AROUND = (0.0, 52.0, -52.0, 104.0, -104.0), (46.0, -46.0, 72.0, -72.0, 98.0, -98.0)
+"""The distances along its axis at which a joint is drawn, and its arrow from the centre of several joints."""
+_PARALLEL = 1e-6
 _CLOSE = 30.0
 """Joints at a smaller distance than this would cover each other."""
 
@@ -50,17 +55,17 @@ _CLOSE = 30.0
 class Machine:
     """Draws a machine on a sheet; `names` holds the spelling of parameters."""
 
-    def __init__(self, drawing: Drawing, box: Box, names: Mapping[str, str]) -> None:
+    def __init__(self, drawing: Drawing, box: Box, names: Mapping[str, str], margins: Margins = MARGINS) -> None:
         self._scene, self._names = drawing.scene, names
         self._sheet = Sheet(box)
         self._rails = rails(self._scene)
         points = self._points()
-        left, below, right, above = _MARGINS
+        left, below, right, above = margins
         inside = Box(box.left + left, box.bottom + below, box.right - right, box.top - above)
         self._view = fitted(points, inside, plane=drawing.plane)
-        heights = [self._view.page(p)[1] for p in points]
-        self.needed = float(max(heights) - min(heights)) + below + above
-        """The height of the machine with its names."""
+        seen = np.array([self._view.page(p) for p in points])
+        self.extent = Box(*map(float, (*seen.min(axis=0), *seen.max(axis=0))))
+        """The rectangle of the machine without its names."""
         self._taken: list[Vector] = []
         """The positions at which joints are drawn."""
 
@@ -90,7 +95,9 @@ class Machine:
                 sheet.draw(rail((first, last), view.page(slide.at)))
         joints = [(turn, *self._anchored(turn)) for turn in scene.turns]
         for turn, at, radius in joints:
-            sheet.draw(turning(turn, at, radius, view, self._through(turn)))
+            sheet.draw(turning(turn, at, radius, view, self._through(turn), has_body=self._centre(turn) is None))
+        for place in dict.fromkeys(c for c in map(self._centre, scene.turns) if c is not None):
+            sheet.draw(meeting(view.page(place)))
         self._frames_and_names(joints)
         for index, arc in enumerate(scene.arcs):
             radius = _ANGLE_RADIUS + 15.0 * index
@@ -101,8 +108,6 @@ class Machine:
             name_length(sheet, view, dimension, text)
         for spot in scene.spots:
             name_point(sheet, f"({in_short([self._spelled(label) for label in spot.labels])})", view.page(spot.at))
-        for place, _ in scene.meetings:
-            sheet.draw(meeting(view.page(place)))
         if scene.belt is not None:
             radius = motor_radius(scene.belt, view)
             for motor in scene.belt.motors:
@@ -118,8 +123,17 @@ class Machine:
 
     def _through(self, turn: Turn) -> list[Vector]:
         """The points through which the axis of a joint is drawn: its own place, and where it meets others."""
+        return [self._view.page(self._centre(turn) or turn.at)]
+
+    def _centre(self, turn: Turn) -> Point | None:
+        """The point in space in which this axis meets others, where these joints are drawn as one; None for others."""
+        if self._view.is_planar or turn.label == 0:
+            return None
         meetings = [place for place, names in self._scene.meetings if turn.label in names]
-        return [self._view.page(place) for place in (turn.at, *meetings)]
+        others = [
+            t for t in self._scene.turns if t.label != 0 and np.any(np.abs(np.cross(t.axis, turn.axis)) > _PARALLEL)
+        ]
+        return meetings[0] if meetings else turn.at if any(np.allclose(t.at, turn.at) for t in others) else None
 
     def _is_on_belt(self, slide: Slide) -> bool:
         return self._scene.belt is not None and not slide.has_arrow
@@ -143,19 +157,30 @@ class Machine:
 
     def _anchored(self, turn: Turn) -> tuple[Vector, float]:
         """The position on its axis at which a joint covers no other; in a plane its arrow is larger instead."""
-        at, radius = self._view.page(turn.at), style.ARC_RADIUS
-        along = self._view.direction(turn.axis)
-        for shift in (0.0, 52.0, -52.0, 104.0, -104.0):
+        centre, radius, along = self._centre(turn), style.ARC_RADIUS, self._view.direction(turn.axis)
+        at = self._view.page(centre or turn.at)
+        shifts = _SHIFTS if centre is None else tuple(self._side(turn, centre) * s - BESIDE for s in _AROUND)
+        for shift in shifts:
             place = at + shift * along
-            if self._is_inside(place) and all(np.linalg.norm(place - other) > _CLOSE for other in self._taken):
-                self._taken.append(place)
+            seen = place if centre is None else place + BESIDE * along
+            if self._is_inside(seen) and all(np.linalg.norm(seen - other) > _CLOSE for other in self._taken):
+                self._taken.append(seen)
                 return place, radius
         self._taken.append(at)
         alike = sum(1 for other in self._taken if np.linalg.norm(other - at) < 1.0)
         return at, radius + 13.0 * (alike - 1)
 
+    def _side(self, turn: Turn, centre: Point) -> int:
+        """On which side of the centre an axis has its arrow: the first one on the side of the body in front of the
+        joints, the others on that of the body behind them.
+        """
+        is_first = next(t for t in self._scene.turns if self._centre(t) == centre) is turn
+        bodies = [(s.start, s.end) if is_first else (s.end, s.start) for s in self._scene.segments]
+        far = next((one for one, at in bodies if np.allclose(at, centre) and np.subtract(one, at) @ turn.axis), turn.at)
+        return -1 if np.subtract(far, centre) @ turn.axis < -1e-6 else 1
+
     def _is_inside(self, place: Vector) -> bool:
-        box, room = self._sheet.box, 40.0
+        box, room = self._sheet.box, 20.0
         x, y = (float(v) for v in place)
         return box.left + room < x < box.right - room and box.bottom + room < y < box.top - room
 

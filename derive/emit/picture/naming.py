@@ -12,7 +12,7 @@ from derive.emit.picture import style
 from derive.emit.picture.canvas import text_width
 from derive.emit.picture.ink import Mark, Vector, head, line
 from derive.emit.picture.placing import Place, Sheet, around
-from derive.emit.picture.symbols import STEPS, arc
+from derive.emit.picture.symbols import BESIDE, STEPS, arc
 from derive.emit.picture.view import View
 
 _SECOND = 45.0
@@ -29,7 +29,7 @@ def name_turn(sheet: Sheet, view: View, turn: Turn, text: str, at: Vector, radiu
         middle = arc(turn, at, radius, view)[2 * STEPS // 3]
         places = around(middle, (12.0, 18.0, 26.0), toward=(middle - at) / radius)
     else:
-        places = around(at + 22.0 * view.direction(turn.axis), (radius + 10.0, radius + 18.0, radius + 30.0))
+        places = around(at + BESIDE * view.direction(turn.axis), (radius + 10.0, radius + 18.0, radius + 30.0))
     sheet.label(text, style.NAME, style.TURN, places, is_bold=True)
 
 

@@ -15,9 +15,9 @@ from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.symbols import triad
 from derive.emit.picture.view import Box, View, fitted
 
-_MOST = 3
+_MOST = 4
 """The most small pictures on a page."""
-HEIGHT = 186.0
+HEIGHT = 200.0
 """The height of one small picture."""
 _FRAME, _AXIS = 20.0, 34.0
 """In pixels: the axes of a frame in a small picture, and the axis of a joint that the choice turns round."""
@@ -32,22 +32,15 @@ def chosen(drawing: Drawing) -> list[tuple[str, Choice]]:
     return [*shown[: _MOST - len(ways)], *ways]
 
 
-def panels(choices: Sequence[tuple[str, Choice]], box: Box, *, plane: tuple[int, int] | None) -> list[Mark]:
-    """The small pictures, one below the other."""
-    marks: list[Mark] = []
-    if choices:
-        marks.append(
-            line([(box.left - 8.0, box.top), (box.left - 8.0, box.top - HEIGHT * len(choices))], style.LINK, 0.8)
-        )
-    for row, (heading, choice) in enumerate(choices):
-        top = box.top - row * HEIGHT
-        marks += _panel(heading, choice, Box(box.left, top - HEIGHT, box.right, top), plane)
-    return marks
+def panels(choices: Sequence[tuple[str, Choice]], boxes: Sequence[Box], *, plane: tuple[int, int] | None) -> list[Mark]:
+    """The small pictures, each in its box."""
+    pairs = zip(choices, boxes, strict=True)
+    return [mark for (heading, choice), box in pairs for mark in _panel(heading, choice, box, plane)]
 
 
 def _panel(heading: str, choice: Choice, box: Box, plane: tuple[int, int] | None) -> Iterator[Mark]:
     assert choice.scenes is not None
-    left = box.left + 4.0
+    left = box.left
     yield Text(heading, (left, box.top - 10.0), style.SMALL, style.INK, is_left=True, is_bold=True)
     numbers = ("1 ", "2 ") if heading.startswith("Byte") else ("", "")
     yield line([(left, box.top - 28.0), (left + 16.0, box.top - 28.0)], _FIRST, 3.0)
@@ -57,7 +50,7 @@ def _panel(heading: str, choice: Choice, box: Box, plane: tuple[int, int] | None
     yield Text(numbers[1] + choice.names[1], (half + 21.0, box.top - 28.0), style.SMALL, _SECOND, is_left=True)
     points = [p for scene in choice.scenes for s in scene.segments for p in (s.start, s.end)]
     points += [ORIGIN.position, *(scene.tool.position for scene in choice.scenes)]
-    inside = Box(left + 14.0, box.bottom + 22.0, box.right - 24.0, box.top - 64.0)
+    inside = Box(left + 14.0, box.bottom + 18.0, box.right - 24.0, box.top - 60.0)
     view = fitted(points, inside, plane=plane)
     sheet = Sheet(Box(left, box.bottom, box.right, box.top - 38.0))
     for ground in choice.scenes[0].grounds:

@@ -182,3 +182,19 @@ def _sampled(mark: Mark) -> tuple[Spot, ...]:
         count = max(1, int(math.hypot(u - x, v - y) / _STEP))
         found += [(x + (u - x) * k / count, y + (v - y) * k / count) for k in range(1, count + 1)]
     return tuple(found) * (2 if isinstance(mark, Line) and mark.width > 4.0 else 1)
+
+
+def extent(marks: Iterable[Mark]) -> Box:
+    """The rectangle that marks cover."""
+    found = np.array([corner for mark in marks for corner in _corners(mark)])
+    (left, bottom), (right, top) = found.min(axis=0), found.max(axis=0)
+    return Box(float(left), float(bottom), float(right), float(top))
+
+
+def _corners(mark: Mark) -> Sequence[Spot]:
+    if not isinstance(mark, Text):
+        half = mark.width / 2
+        return [(x + side * half, y + side * half) for x, y in mark.points for side in (-1.0, 1.0)]
+    (x, y), wide, high = mark.at, text_width(mark.text, mark.size, mark.is_bold), 0.65 * mark.size
+    left = x if mark.is_left else x - wide / 2
+    return [(left, y - high), (left + wide, y + high)]

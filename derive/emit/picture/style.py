@@ -1,4 +1,4 @@
-"""Colours and sizes of a picture, in pixels."""
+"""Colours and sizes of a picture, in the units of its page."""
 
 INK = "#22272e"
 FAINT = "#6b7480"
@@ -15,9 +15,13 @@ RAIL = "#ead9c8"
 AXES = ("#c23b30", "#2d8a43", "#2f62b5")
 PAPER = "#ffffff"
 
-TITLE, LABEL, NAME, SMALL = 18.0, 13.0, 15.5, 13.0
-"""The sizes of letters. The smallest are still letters where a window shows the page at two thirds of its width."""
+SHOWN = 400
+"""The width at which a window shows a picture, in its pixels."""
+WIDTH = 500.0
+"""The width of the widest page, which a window shows 400 pixels wide, or even 320: letters are then 9 pixels high."""
+TITLE, LABEL, NAME, SMALL = 16.0, 14.0, 16.0, 14.0
+"""The sizes of letters."""
 LINK_WIDTH, ROD_WIDTH, PLATE_WIDTH, BASE_WIDTH = 9.0, 5.0, 5.0, 5.0
 JOINT_RADIUS = 11.0
-ARC_RADIUS = 25.0
-FRAME = 58.0
+ARC_RADIUS = 23.0
+FRAME = 46.0

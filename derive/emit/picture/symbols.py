@@ -22,6 +22,8 @@ _SWEEP = np.radians(75.0)
 """The angle of an arrow about an axis in the plane; in space an arrow goes most of the way around."""
 _AROUND = np.radians(250.0)
 STEPS = 28
+BESIDE = 22.0
+"""The distance of the arrow about an axis in space from its joint."""
 PAIR_WIDTH = 3.4
 """The width of each of two parallel rods."""
 
@@ -49,8 +51,8 @@ def _parallelogram(segment: Segment, across: Sequence[float], view: View) -> lis
 
 
 def meeting(at: Vector) -> list[Mark]:
-    """The point in which axes meet: a ring with a point."""
-    return [line(_circle(at, 7.0), style.TURN, 1.6), area(_circle(at, 2.4), style.TURN, style.TURN)]
+    """The one centre of joints whose axes meet: a ball."""
+    return [area(_circle(at, 8.0), style.JOINT, style.TURN, 1.6), area(_circle(at, 2.4), style.TURN, style.TURN)]
 
 
 def ground(at: Vector, view: View) -> list[Mark]:
@@ -95,7 +97,9 @@ def _angle(x: Vector, y: Vector, toward: Sequence[float]) -> float:
     return float(np.arctan2(vector @ y, vector @ x))
 
 
-def turning(turn: Turn, at: Vector, radius: float, view: View, through: Sequence[Vector] = ()) -> list[Mark]:
+def turning(
+    turn: Turn, at: Vector, radius: float, view: View, through: Sequence[Vector] = (), *, has_body: bool = True
+) -> list[Mark]:
     """A rotary joint: its body, its axis as far as it goes `through` points of the page, and an arrow in its positive
     direction where something drives it.
     """
@@ -112,9 +116,9 @@ def turning(turn: Turn, at: Vector, radius: float, view: View, through: Sequence
     along = [float((place - at) @ z) / length for place in through if length > 1e-9]
     ends = (min([-34.0, *(a - 20.0 for a in along)]), max([44.0, *(a + 20.0 for a in along)]))
     marks = [line([at + end * z for end in ends], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
-    marks += _cylinder(turn, at, view)
+    marks += _cylinder(turn, at, view) if has_body else []
     marks += _reference(turn, turn.zero, at, 3.0 * radius, view)
-    around = arc(turn, at + 22.0 * z, radius * 0.85, view)
+    around = arc(turn, at + BESIDE * z, radius * 0.85, view)
     return [*marks, *(arrow(around, style.TURN, 2.2) if turn.label != 0 else ())]
 
 
@@ -244,7 +248,7 @@ def _ring(drawn: Belt, centre: Point, view: View) -> list[Vector]:
     ]
 
 
-_TRAVEL = 0.34
+_TRAVEL = 0.5
 """The length of a rail over the size of the machine."""
 FREE = 100.0
 """The size with which a machine without lengths is drawn."""

@@ -11,8 +11,10 @@ import sympy as sp
 from jinja2 import Environment
 
 from derive.description.mechanism import Kind, Mechanism, Role
+from derive.emit.picture.style import SHOWN
 from derive.emit.softmotion.block import Block
 from derive.emit.softmotion.inputs import inputs
+from derive.emit.softmotion.pictures import CHOICES
 from derive.emit.st.layout import WIDTH
 from derive.emit.st.names import respelled
 from derive.geometry.frames import Motion
@@ -77,7 +79,7 @@ _DRIVES = " The limits that SoftMotion passes (AxisSettings) narrow those of the
 
 
 def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
-    """The description of a block, with a reference to its picture."""
+    """The description of a block, with references to its pictures."""
     names, further = inputs(kinematics).names, inputs(kinematics).notes
     mechanism = kinematics.mechanism
     kind = mechanism.is_position, mechanism.is_orientation
@@ -86,6 +88,8 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
     text = templates.get_template("description.rst.j2").render(
         mechanism=mechanism,
         picture=None if kinematics.undrawn else picture.format(name=block.name),
+        choices=picture.format(name=f"{block.name}{CHOICES}") if kinematics.has_choices else None,
+        shown=SHOWN,
         source="\n".join(_lines(source.rstrip())),
         summary="\n".join(_lines(kinematics.mechanism.summary)),
         rows=", ".join(kinematics.rows),

@@ -1,4 +1,4 @@
-"""The pictures in the descriptions of function blocks: one PNG and one SVG for every mechanism."""
+"""The pictures in the descriptions of function blocks, as PNG and as SVG: every machine, and its choices."""
 
 from __future__ import annotations
 
@@ -8,20 +8,24 @@ from derive.emit.softmotion.inputs import inputs
 from derive.kinematics.kinematics import Freedom, Kinematics
 
 FOLDER = "pictures"
+CHOICES = "_Configuration"
+"""The end of the name of the second picture, of the choices."""
 
 
 def pictures_of(kinematics: Kinematics) -> dict[str, bytes]:
-    """The drawing of a mechanism: path below the folder of the language → bytes."""
+    """The drawings of a mechanism, first the machine: path below the folder of the language → bytes."""
     from derive.emit.picture.canvas import pictures
-    from derive.emit.picture.page import page
+    from derive.emit.picture.page import pages
 
     block = kinematics.mechanism.block_name
     parameters = kinematics.mechanism.parameters
     given = inputs(kinematics).names
     names = {p.name: given[p.name] if p.fixed is None else f"{p.nominal:g}" for p in parameters}
-    drawn = page(drawing_of(kinematics), block, names)
-    made = pictures(drawn.marks, drawn.height)
-    return {f"{FOLDER}/{block}.png": made.png, f"{FOLDER}/{block}.svg": made.svg}
+    found: dict[str, bytes] = {}
+    for drawn, end in zip(pages(drawing_of(kinematics), block, names), ("", CHOICES), strict=False):
+        made = pictures(drawn.marks, drawn.width, drawn.height)
+        found |= {f"{FOLDER}/{block}{end}.png": made.png, f"{FOLDER}/{block}{end}.svg": made.svg}
+    return found
 
 
 def row_of(kinematics: Kinematics) -> dict[str, str]:

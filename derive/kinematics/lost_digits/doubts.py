@@ -199,7 +199,7 @@ def without_meeting(program: Program) -> Program:
 
 def _joined(lengths: Sequence[Require], refusals: Sequence[Require]) -> list[Require]:
     """The refusals, with the conditions on lengths in the first other one: that digits are lost is no other reason.
-    Nothing is missing then beyond rounding.
+    If these conditions alone do not hold, nothing is missing but digits: the amount is 0.
     """
     if not lengths:
         return list(refusals)

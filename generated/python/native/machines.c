@@ -41,7 +41,6 @@
 #include "p2x_type1.h"
 #include "p2x_type2.h"
 #include "p2y.h"
-#include "painter.h"
 #include "palletizer.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
@@ -49,6 +48,7 @@
 #include "polar_z.h"
 #include "pos_rrr.h"
 #include "rodpalletizer.h"
+#include "rodwrist.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -134,8 +134,6 @@ softkin_regular p2x_type1_regular;
 softkin_regular_all p2x_type1_regular_all;
 softkin_regular p2x_type2_regular;
 softkin_regular p2y_regular;
-softkin_regular painter_regular;
-softkin_regular_all painter_regular_all;
 softkin_regular palletizer_regular;
 softkin_regular_all palletizer_regular_all;
 softkin_regular pcc_regular;
@@ -238,7 +236,6 @@ const softkin_native softkin_machines[] = {
     {"p2x_type1 4470745ab5555d52", &p2x_type1_mechanism, {p2x_type1_regular, p2x_type1_regular_all}},
     {"p2x_type2 cfb1e2e1acec7873", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y 30c921779399fe62", &p2y_mechanism, {p2y_regular, NULL}},
-    {"painter e48256c32bf68996", &painter_mechanism, {painter_regular, painter_regular_all}},
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
@@ -246,6 +243,7 @@ const softkin_native softkin_machines[] = {
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
     {"pos_rrr 3a83fecab7ffdb11", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
+    {"rodwrist 4efd0a5cae0097c6", &rodwrist_mechanism, {NULL, NULL}},
     {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 339819f261d7e7aa", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z 4f68cce713dae8e2", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},

@@ -72,7 +72,6 @@ if TYPE_CHECKING:
     from softkin.p2x_type1 import P2XType1
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
-    from softkin.painter import Painter
     from softkin.palletizer import Palletizer
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
@@ -80,6 +79,7 @@ if TYPE_CHECKING:
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
     from softkin.rodpalletizer import RodPalletizer
+    from softkin.rodwrist import RodWrist
     from softkin.scara2_z import Scara2Z
     from softkin.scara3_ccz import Scara3CCZ
     from softkin.scara3_z import Scara3Z
@@ -161,7 +161,6 @@ __all__ = [
     "P2CType2",
     "P2XType1",
     "P2XType2",
-    "Painter",
     "Palletizer",
     "Parameter",
     "Planar3RRR",
@@ -169,6 +168,7 @@ __all__ = [
     "PolarZ",
     "PosRRR",
     "RodPalletizer",
+    "RodWrist",
     "Rotation",
     "Scara2Z",
     "Scara3CCZ",
@@ -248,7 +248,6 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
-    "Softkin_Painter": ("painter", "Painter"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
@@ -256,6 +255,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),
     "Softkin_RodPalletizer": ("rodpalletizer", "RodPalletizer"),
+    "Softkin_RodWrist": ("rodwrist", "RodWrist"),
     "Kin_Scara2_Z": ("scara2_z", "Scara2Z"),
     "Kin_Scara3_CCZ": ("scara3_ccz", "Scara3CCZ"),
     "Kin_Scara3_Z": ("scara3_z", "Scara3Z"),

@@ -9,13 +9,17 @@ import softkin
 from derive.description.mechanism import DescriptionError
 from derive.drawing.drawing import Drawing, drawing_of, is_turned_round, looks_alike
 from derive.drawing.scene import Belt, Body
+from derive.emit.picture import style
+from derive.emit.picture.ink import Area, Line
+from derive.emit.picture.machine import Machine
+from derive.emit.picture.view import Box
 from derive.kinematics.build import build
 from tests.random_axes import random_axes
 from tests.unit.drawing.machines import CATALOGUE, drawn
 
 pytestmark = pytest.mark.slow
 
-BELTS = ("Kin_HGantry2", "Kin_HGantry3", "Kin_TGantry2", "Kin_TGantry3")
+BELTS = ("Kin_HGantry2", "Kin_HGantry3", "Kin_TGantry2", "Kin_TGantry3", "Kin_P2Y")
 DELTAS = ("Kin_Delta_P3C_Type3", "Softkin_Delta_C", "Kin_Tripod_Linear", "Kin_Tripod_P3Z")
 NONE = ("Kin_Tripod_Rotary", "Kin_Hexapod", "Softkin_DualScara", "Kin_Crane", "Kin_P2C_Type1")
 
@@ -27,17 +31,18 @@ def _belt(name: str) -> Belt:
 
 
 @pytest.mark.parametrize("name", BELTS)
-@pytest.mark.parametrize("drive", ["A", "B"])
-def test_a_motor_pulls_the_carriage_where_its_drive_moves_it(name: str, drive: str) -> None:
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_motor_pulls_the_carriage_where_its_drive_moves_it(name: str, number: int) -> None:
     """By hand: the strand from the carriage to the left motor gets longer by x - y, that to the right one by -x - y.
 
     So the belt runs past a motor, away from the carriage's end of it, by the negative of that. In an H this end arrives
     at the outer side of the motor, downward; in a T at the lower side, outward.
     """
     one, belt = drawn(name), _belt(name)
+    drive = one.mechanism.joints[number].name
     (motor,) = [m for m in belt.motors if str(m.label) == drive]
     side = np.sign(motor.at[0])
-    axes = np.eye(len(one.mechanism.joints))[[j.name for j in one.mechanism.joints].index(drive)]
+    axes = np.eye(len(one.mechanism.joints))[number]
     x, y = one.closure.frame(one.joints_at(axes[None, :]), one.parameters)[0, :2, 0]
     past, other = y + side * x, y - side * x
     assert abs(past) == pytest.approx(1.0) and other == pytest.approx(0.0), "it runs past its own motor alone"
@@ -108,6 +113,24 @@ def test_axes_of_a_wrist_meet(name: str, names: str) -> None:
 def test_axes_that_pass_each_other_do_not_meet(name: str) -> None:
     """An offset wrist, three parallel axes, two axes."""
     assert not drawn(name).drawing.scene.meetings
+
+
+@pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Wrist3", "Kin_Ac6_TXTYTZRYRXRZ"])
+def test_a_wrist_is_drawn_with_one_centre(name: str) -> None:
+    """The lines of its three axes go through one point of the page, where a ball is; none of them has a body."""
+    drawing = drawn(name).drawing
+    marks = Machine(drawing, Box(0.0, 0.0, 480.0, 400.0), {}).drawn()
+    axes = [np.array(m.points) for m in marks if isinstance(m, Line) and m.dashes == (9.0, 3.0, 2.0, 3.0)][-3:]
+    balls = [np.mean(m.points, axis=0) for m in marks if isinstance(m, Area) and m.fill == style.JOINT]
+    assert any(all(_aside(ball, ends) < 0.2 for ends in axes) for ball in balls)
+    cylinders = [m for m in marks if isinstance(m, Area) and m.fill == "#eef4fb"]
+    assert len(cylinders) == len(drawing.scene.turns) - 3
+
+
+def _aside(place: np.ndarray, ends: np.ndarray) -> float:
+    """The distance of a point of the page from a line."""
+    (x, y), (u, v) = ends[1] - ends[0], place - ends[0]
+    return float(abs(x * v - y * u) / np.hypot(x, y))
 
 
 def _first(name: str) -> Drawing:

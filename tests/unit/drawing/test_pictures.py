@@ -18,7 +18,7 @@ from derive.description.validate import validate
 from derive.drawing.drawing import drawing_of
 from derive.drawing.pose import drawn_pose, nominal_machine
 from derive.emit.picture import canvas
-from derive.emit.picture.canvas import WIDTH, pictures, text_width
+from derive.emit.picture.canvas import pictures, text_width
 from derive.emit.picture.naming import spelled
 from derive.emit.picture.page import page
 from derive.ir.program import Require, Status
@@ -43,21 +43,53 @@ def _block(mechanism: Mechanism) -> str:
     return (ST / mechanism.family / f"{mechanism.block_name}.st").read_text(encoding="utf-8")
 
 
+def _drawn(mechanism: Mechanism) -> list[ElementTree.Element]:
+    """The machine, and the choices of its configuration if they are drawn."""
+    paths = (PICTURES / f"{mechanism.block_name}{end}.svg" for end in ("", "_Configuration"))
+    return [ElementTree.parse(path).getroot() for path in paths if path.exists()]
+
+
 def _texts(mechanism: Mechanism) -> list[ElementTree.Element]:
-    return list(ElementTree.parse(PICTURES / f"{mechanism.block_name}.svg").iter(_TEXT))
+    return [element for root in _drawn(mechanism) for element in root.iter(_TEXT)]
 
 
-def test_the_description_refers_to_a_shipped_picture(mechanism: Mechanism) -> None:
-    (name,) = re.findall(r"^\.\. image:: @\((.+)\)$", _block(mechanism), re.MULTILINE)
-    with Image.open(PICTURES / name) as image:
-        assert image.format == "PNG"
-        assert image.width == WIDTH and 300 <= image.height <= 750
-        assert len(image.convert("RGB").getcolors(1 << 16) or ()) > 10, "not blank"
+def _size(root: ElementTree.Element) -> tuple[float, float]:
+    _, _, width, height = map(float, root.attrib["viewBox"].split())
+    return width, height
+
+
+def test_the_description_refers_to_the_shipped_pictures(mechanism: Mechanism) -> None:
+    """Shown 400 pixels wide, each has two pixels for one of the window, and is hardly higher than wide."""
+    found = re.findall(r"^\.\. image:: @\((.+)\)\n   :width: 400$", _block(mechanism), re.MULTILINE)
+    names = (f"{mechanism.block_name}{end}.png" for end in ("", "_Configuration"))
+    assert found == [name for name in names if (PICTURES / name).exists()]
+    assert len(found) == 2 or not mechanism.branches
+    for name in found:
+        with Image.open(PICTURES / name) as image:
+            assert image.format == "PNG"
+            assert image.width == 800 and 220 <= image.height <= 900
+            assert len(image.convert("RGB").getcolors(1 << 16) or ()) > 10, "not blank"
+
+
+def test_the_machine_fills_its_picture(mechanism: Mechanism) -> None:
+    """The rectangle of its shapes covers a good part of the page, in both directions."""
+    root, *_ = _drawn(mechanism)
+    shapes = [e for e in root.iter() if e.get("points")]
+    spots = np.array([spot.split(",") for e in shapes for spot in e.attrib["points"].split()], dtype=float)
+    share = np.ptp(spots, axis=0) / _size(root)
+    assert np.min(share) > 0.34 and np.prod(share) > 0.16, share
+
+
+def test_no_length_is_told_as_a_number(mechanism: Mechanism) -> None:
+    """A value of a length would hold for the drawn dimensions alone; angles have a degree sign."""
+    text = " ".join(element.text or "" for element in _texts(mechanism))
+    assert not re.search(r"= [-−]?\d+(\.\d+)?(?![\d.°])", text)
 
 
 def test_axes_and_lengths_are_in_the_text(mechanism: Mechanism) -> None:
     """The text of a picture names every axis and every length."""
     text = " ".join(_in_full(element.text or "") for element in _texts(mechanism))
+    text = " ".join([text, *_series(text)])
     declaration = _block(mechanism).split("END_VAR")[0]
     lengths = [name for name in _INPUT.findall(declaration) if not name.startswith(_SETTINGS)]
     assert len(lengths) >= sum(p.unit == "u" for p in mechanism.parameters)
@@ -73,6 +105,18 @@ def _in_full(text: str) -> str:
     return text if short is None else ", ".join(short[1] + letter for letter in "XYZ")
 
 
+def _series(text: str) -> list[str]:
+    """The names of a series: dRod2 to dRod4, dBase2X to dBase4Z, dRailX2 to dRailY4."""
+    found = re.findall(r"\b(d[A-Za-z]+?)([XYZ]?)(\d)([XYZ]?) to \1([XYZ]?)(\d)([XYZ]?)\b", text)
+    return [
+        f"{stem}{before}{number}{after}"
+        for stem, _, first, _, one, last, other in found
+        for number in range(int(first), int(last) + 1)
+        for before in ("XYZ"[: "XYZ".index(one) + 1] if one else ("",))
+        for after in ("XYZ"[: "XYZ".index(other) + 1] if other else ("",))
+    ]
+
+
 def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
     size = float(element.attrib["font-size"])
     wide = text_width(element.text or "", size, element.get("font-weight") == "bold")
@@ -83,27 +127,29 @@ def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
 
 def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
     """Every text is inside the picture, and no two texts touch."""
-    root = ElementTree.parse(PICTURES / f"{mechanism.block_name}.svg").getroot()
-    _, _, width, height = map(float, root.attrib["viewBox"].split())
-    found = [(element.text, _extent(element)) for element in _texts(mechanism)]
-    for text, (left, top, right, bottom) in found:
-        assert left > 0 and top > 0 and right < width and bottom < height, text
-    for (one, a), (other, b) in combinations(found, 2):
-        wide, high = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-        assert wide <= 0 or high <= 0, (one, other)
+    for root in _drawn(mechanism):
+        width, height = _size(root)
+        found = [(element.text, _extent(element)) for element in root.iter(_TEXT)]
+        for text, (left, top, right, bottom) in found:
+            assert left > 0 and top > 0 and right < width and bottom < height, text
+        for (one, a), (other, b) in combinations(found, 2):
+            wide, high = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+            assert wide <= 0 or high <= 0, (one, other)
 
 
 def test_letters_are_legible_where_a_window_shrinks_the_picture(mechanism: Mechanism) -> None:
-    """At two thirds of its width every letter is still more than eight pixels high."""
-    sizes = [float(element.attrib["font-size"]) for element in _texts(mechanism)]
-    assert min(sizes) * 600 / WIDTH > 8.0
+    """At a width of 320 pixels the smallest letters still have a size of nine pixels."""
+    for root in _drawn(mechanism):
+        sizes = [float(element.attrib["font-size"]) for element in root.iter(_TEXT)]
+        assert min(sizes) * 320 / _size(root)[0] >= 8.96
 
 
 def test_no_picture_without_a_block() -> None:
     """Every picture belongs to a block, and all of them together are small."""
     blocks = {m.block_name for m in CATALOGUE.values()}
-    assert {p.name for p in PICTURES.iterdir()} == {f"{b}.{ending}" for b in blocks for ending in ("png", "svg")}
-    assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 2_500_000
+    names = {p.name for p in PICTURES.iterdir()}
+    assert {n.replace("_Configuration.", ".") for n in names} == {f"{b}.{e}" for b in blocks for e in ("png", "svg")}
+    assert sum(p.stat().st_size for p in PICTURES.iterdir()) < 50_000 * len(blocks)
 
 
 @pytest.mark.long
@@ -111,7 +157,7 @@ def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
     """Equal marks give equal files, which hold no date."""
     one = drawn("Kin_P2C_Type2")
     drawings = [page(one.drawing, "Title", {"inner_arm": "dInnerArm"}) for _ in range(2)]
-    first, second = (pictures(p.marks, p.height) for p in drawings)
+    first, second = (pictures(p.marks, p.width, p.height) for p in drawings)
     assert first == second
     assert first.png.startswith(b"\x89PNG") and b"dInnerArm" in first.svg
     assert not re.search(rb"date|20\d\d-\d\d|[Mm]atplotlib", first.svg + first.png)
@@ -142,7 +188,7 @@ TEXTS = [f"A{k} link_{k} ±{k * 7}° tool centre {chr(65 + k % 26)}" for k in ra
 def drawn_letters(_: int) -> str:
     """The digest of all texts, each drawn anew."""
     canvas._letters.cache_clear()
-    found = [canvas._letters(text, 11.0, is_bold) for text in TEXTS for is_bold in (False, True)]
+    found = [canvas._letters(text, 11.0, is_bold, 1.6) for text in TEXTS for is_bold in (False, True)]
     return sha256(b"".join(letters.covered.tobytes() for letters in found)).hexdigest()
 
 
