@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 8841
+    VALUES = 8919
 
     def compute_wave(self, given: Values, status: Codes) -> Values:
         """The product of the residuals of all branches as a sum of waves, and its rounding."""

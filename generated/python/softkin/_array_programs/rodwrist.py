@@ -37,7 +37,7 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 719
+    VALUES = 923
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""
