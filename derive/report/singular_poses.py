@@ -216,11 +216,13 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
 
     spread = scales * np.random.default_rng(3).uniform(-1.0, 1.0, (_SAMPLES, len(home)))
     reached = None
-    for width in _WIDTHS:
-        rows = np.concatenate([home + 0.05 * spread[:1], home + width * spread])
+    for far in _WIDTHS:
+        rows = np.concatenate([home + 0.05 * spread[:1], home + far * spread])
         starts = _smallest_first(rows, measure(rows), place)
-        reached = reached or _clearest(measure, place, starts, scales)
+        reached = _clearest(measure, place, starts, scales)
         reached = reached or _clearest(measure, place, _gathered(measure, place, rows, scales), scales)
+        if reached is not None:
+            break
     if reached is None:
         return None
     at, _ = reached
