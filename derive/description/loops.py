@@ -106,7 +106,8 @@ def rod(
 
 def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:
     """A plane in which a point of the plate stays: `guide("1", (0, 1, 0), on_plate(R, 0, 0))`; shifted by joints it
-    lifts the plate: `guide("lift", (0, 0, 1), on_plate(0, 0, 0), S1 + HEIGHT)`.
+    lifts the plate: `guide("lift", (0, 0, 1), on_plate(0, 0, 0), S1 + HEIGHT)`. Without the position of the plate,
+    as in `tuple(ROTATION * Matrix([R, 0, 0]))`, a direction of the plate stays in the plane.
     """
     if len(normal) != len(plate):
         raise DescriptionError(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import repeat
 
 import sympy as sp
 
@@ -95,10 +96,16 @@ def is_driven(mechanism: Mechanism, values: Iterable[sp.Expr]) -> bool:
 def point_of(leg: Leg) -> Vector:
     """The leg's joint in the frame of the plate."""
     point = tuple(sp.diff(leg.plate[0], entry) for entry in ROTATION_ENTRIES[: len(leg.plate)])
-    if any(sp.expand(a - b) != 0 for a, b in zip(leg.plate, on_plate(*point), strict=True)):
+    moved = map(real, COORDINATE_NAMES) if is_direction(leg) else repeat(sp.Integer(0))
+    if any(sp.expand(a + m - b) != 0 for a, b, m in zip(leg.plate, on_plate(*point), moved, strict=False)):
         what, end = ("rod", "its end") if isinstance(leg, Rod) else ("guide", "its point")
         raise DescriptionError(f"{what} {leg.name!r}: {end} must be a point of the plate")
     return point
+
+
+def is_direction(leg: Leg) -> bool:
+    """Whether a guide holds a direction of the plate, R v, wherever the plate is, and not a point of it, x + R v."""
+    return isinstance(leg, Plane) and not sp.Matrix(leg.plate).free_symbols & {*map(real, COORDINATE_NAMES)}
 
 
 def turned(rotation: sp.Matrix, point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
@@ -198,7 +205,7 @@ def rows(mechanism: Mechanism, vectors: Sequence[str] | None = None) -> tuple[sp
     return tuple(
         entry
         for leg, word in zip(legs_of(mechanism), words, strict=True)
-        for entry in (*_shifts(mechanism, names(word, leg)), *moments(mechanism, leg))
+        for entry in (*_shifts(mechanism, () if is_direction(leg) else names(word, leg)), *moments(mechanism, leg))
     )
 
 

@@ -45,6 +45,7 @@ from derive.plate.legs import (
     angles,
     by_angles,
     home_angles,
+    is_direction,
     leg_symbol,
     legs_of,
     length,
@@ -283,7 +284,7 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         arm, normal = names("arm", plane), names(NORMAL, plane)
         lets += turned(_turn(mechanism), names("start_arm", plane), arm)
         lets += plane_row(mechanism, plane, arm)
-        point = (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
+        point = arm if is_direction(plane) else (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
         ahead = sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
         error = ahead - next(values)
         lets.append(Let(leg_symbol("error", plane), error, f"distance of guide {plane.name} from its plane"))

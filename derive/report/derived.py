@@ -25,7 +25,7 @@ from derive.kinematics.inverse import Inverse
 from derive.kinematics.margins import Factor
 from derive.kinematics.search.derivations import Searched
 from derive.kinematics.solution import Solution
-from derive.plate.passive import solve_passive
+from derive.plate.passive import mode_of, solve_passive
 from derive.solver.parallel_axes import Sum
 from derive.solver.positive_steps import known_signs
 from derive.solver.solve import RULES, TIERS, Derivation, Rule, Step
@@ -116,7 +116,8 @@ def derived_of(solution: Solution) -> Derived:
     mechanism = solution.mechanism
     routes = [_route("Inverse kinematics", solution.inverse, solution.assignments)]
     if mechanism.passive:
-        steps = _Explained(solve_passive(mechanism), {}).steps()
+        passive = solve_passive(mechanism)
+        steps = _Explained(passive, {step.sigma: mode_of(step) for step in passive.determinants}).steps()
         routes.insert(0, Route(f"What the task does not command: {', '.join(mechanism.passive)}", (), (), steps))
     return Derived(mechanism, tuple(routes), _forward(mechanism), solution.factors)
 

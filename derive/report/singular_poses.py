@@ -22,7 +22,7 @@ from derive.ir.interpret import evaluate, run
 from derive.ir.passes import normalise
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Why
-from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branch_sign, cosine, sine
+from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, branch_sign, cosine, real, sine
 from derive.kinematics.kinematics import Reals
 from derive.kinematics.sampling import sample_axes, size_of
 from derive.plate.legs import angles, by_angles
@@ -42,6 +42,8 @@ _STUCK = 0.95
 """The search stops where a step leaves more than this share of the margin."""
 _CLOUD, _NARROWER, _CLOUDS, _TRIALS = 0.2, 0.95, 60, 20
 """The width of the first cloud of poses over the scales, how each is narrower than the one before, and their sizes."""
+_WIDTHS = (0.45, 2.0)
+"""How far poses of a platform are drawn from home, in scales; farther where the margin vanishes nowhere near it."""
 _BESIDE = 1e-6
 _CLEAR = 0.05
 """Another margin larger than this does not vanish in the same pose."""
@@ -213,34 +215,38 @@ def _of_platform(machine: Machine, derived: Derived, name: str) -> SingularPose 
         return solved(rows)[0]
 
     spread = scales * np.random.default_rng(3).uniform(-1.0, 1.0, (_SAMPLES, len(home)))
-    rows = np.concatenate([home + 0.05 * spread[:1], home + 0.45 * spread])
-    starts = _smallest_first(rows, measure(rows), place)
-    reached = _clearest(measure, place, starts, scales)
-    if reached is None:
-        reached = _clearest(measure, place, _gathered(measure, place, rows, scales), scales)
+    reached = None
+    for far in _WIDTHS:
+        rows = np.concatenate([home + 0.05 * spread[:1], home + far * spread])
+        starts = _smallest_first(rows, measure(rows), place)
+        reached = _clearest(measure, place, starts, scales)
+        reached = reached or _clearest(measure, place, _gathered(measure, place, rows, scales), scales)
+        if reached is not None:
+            break
     if reached is None:
         return None
     at, _ = reached
     measured, found = solved(at[None])
     axes = tuple(float(found[j.axis.name][0]) for j in mechanism.joints)
-    named = _named_frames(mechanism, at[None])
-    frame = tuple(float(named[n][0]) for n in FRAME)
+    frame = tuple(float(found[n][0]) for n in FRAME)
     return SingularPose(name, axes, float(measured[place, 0]), axes, frame)
 
 
 def _program_at_pose(derived: Derived) -> Program:
-    """The program of the margins of a platform at a known pose, by the inverse and the lines of the legs, and of its
-    axis values.
+    """The program of the margins of a platform at a commanded pose, by the inverse and the lines of the legs, of its
+    axis values, and of its whole pose.
     """
     mechanism, route = derived.mechanism, derived.inverse[-1]
     statements = (*route.known, *(s for step in route.steps for s in step.statements))
     lets = [let for factor in derived.factors for let in factor.lets]
     own = {s.name for s in statements if isinstance(s, Let)}
     axes = [let for j in mechanism.joints for let in axis_lets(j) if let.name not in own]
+    pose = {c: commanded(mechanism).get(c, c) for c in (*map(real, COORDINATE_NAMES), *ROTATION_ENTRIES)}
     body = renamed_in((*statements, *platform_checks(mechanism, statements), *lets, *axes), commanded(mechanism))
     kept = [s for s in body if not _is_far_from_type_2(s)]
     margins_told = [Output(f.name, f.lets[-1].name) for f in derived.factors]
-    return normalise("margins", kept, [*margins_told, *(Output(j.axis.name, j.axis) for j in mechanism.joints)])
+    told = [*margins_told, *(Output(j.axis.name, j.axis) for j in mechanism.joints)]
+    return normalise("margins", kept, [*told, *(Output(c.name, value) for c, value in pose.items())])
 
 
 def _is_far_from_type_2(statement: Statement) -> bool:

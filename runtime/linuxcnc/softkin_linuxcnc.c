@@ -261,8 +261,16 @@ static bool rates_of(const double *joint, const double *words, double *system) {
   const softkin_frame there = frame_at(words);
   char *const moved = (char *)THIS.machine + KIND->machine_size;
   double *line = system, *letters = system + JOINTS;
+  softkin_frame about = ORIGIN;
   if (softkin_jacobian_near(KIND, THIS.machine, joint, &there, moved, rows) != SOFTKIN_OK) {
     return false;
+  }
+  /* rows "tilt x" and "tilt y" are about axes of the tool */
+  if (THIS.angles > 0 && KIND->rows[KIND->row_count - 1][1] == 'i') {
+    const softkin_frame *begin = KIND->forward_from == NULL ? NULL : &there;
+    if (softkin_forward(KIND, THIS.machine, joint, begin, &about, NULL, NULL, NULL) != SOFTKIN_OK) {
+      return false;
+    }
   }
   softkin_turns_by_angles(&words[A_WORD], turns);
   for (int row = 0; row < KIND->row_count; row += 1) {
@@ -276,8 +284,11 @@ static bool rates_of(const double *joint, const double *words, double *system) {
     if (coordinate >= 0) {
       letters[coordinate] = 1.0;
     }
+    const int axis = coordinate < 0 ? KIND->rows[row][5] - 'x' : 0; /* "turn x" */
     for (int i = 3 - THIS.angles; coordinate < 0 && i < 3; i += 1) {
-      letters[A_WORD + i] = turns[KIND->rows[row][5] - 'x'][i]*SOFTKIN_DEGREE; /* "turn x" */
+      for (int j = 0; j < 3; j += 1) {
+        letters[A_WORD + i] += about.rotation[j][axis]*turns[j][i]*SOFTKIN_DEGREE;
+      }
     }
     line += JOINTS + LETTERS;
     letters += JOINTS + LETTERS;

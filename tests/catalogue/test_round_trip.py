@@ -11,6 +11,7 @@ from tests.catalogue.machines import Machine, few
 from tests.catalogue.references import held_at
 from tests.catalogue.roots import SAME, distance, principal, solutions
 from tests.mechanisms import has_struts
+from tests.orthonormal import rodrigues
 
 POSES = 300
 AXES = 1e-9
@@ -124,8 +125,8 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
 @pytest.mark.slow("Hexaglide", "ThreeParallel")
 @pytest.mark.long("Pos_RRR")
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
-    """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or
-    none.
+    """Positions from the middle of the machine to twice its reach, or turns up to 2.2 radians where none is commanded:
+    two branches of a serial one answer together, or none.
     """
     counts = set()
     for machine in machines[::2]:
@@ -133,7 +134,8 @@ def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, 
         scales = (0.05, 0.6, 2.2)
         for values, position, rotation, scale in zip(axes, *machine.closure.poses(axes), scales, strict=True):
             beyond = np.array([0.0, 2.0 * machine.reach, 0.0]) if machine.mechanism.is_platform and scale > 1.0 else 0.0
-            counts.add(compare(machine, scale * position + beyond, rotation, values))
+            turned = rotation if machine.mechanism.task.position else rotation @ rodrigues((1.0, 0.0, 0.0), scale)
+            counts.add(compare(machine, scale * position + beyond, turned, values))
     most = 2 ** machines[0].robot.BRANCHES
     if machines[0].branches_meet_together:
         assert counts == ({0, most} if machines[0].has_a_reach else {most})

@@ -25,6 +25,7 @@ STARTS = 60
 AGAIN = 12
 """How often joints start elsewhere where a positive quantity is not."""
 STILL = 1e-15
+QUARTERS = (0.0, np.pi / 2.0, np.pi)
 
 
 class TurningClosure(Closure):
@@ -32,10 +33,12 @@ class TurningClosure(Closure):
 
     def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float]) -> None:
         super().__init__(mechanism, parameters)
-        self._equations = [*mechanism.closure, *(r.equation / r.length for r in mechanism.rods)]
+        self._fixed = [g.equation for g in mechanism.fixed_guides]
+        self._equations = [*mechanism.closure, *self._fixed, *(r.equation / r.length for r in mechanism.rods)]
         self._indicators = [b.signs[0] * b.indicator for b in mechanism.branches]
         self.axes_of_turn = [2] if mechanism.task.turning is Turning.ABOUT_Z else [0, 1, 2]
-        width = len(self.task)
+        width = len(mechanism.home) - len(self.axes_of_turn)
+        self.task = ["xyz".index(c) for c in mechanism.motion.position[:width]]
         home = self._values(mechanism.home, [], np.zeros((1, 0)))[0]
         self.home_position = np.zeros(3)
         self.home_position[self.task] = home[:width]
@@ -114,7 +117,7 @@ class TurningClosure(Closure):
         twist *= [SHIFT * self.reach] * len(self.task) + [TURN] * len(self.axes_of_turn)
         positions, rotations = np.tile(self.home_position, (count, 1)), np.tile(self.home_rotation, (count, 1, 1))
         self._move(positions, rotations, twist)
-        return positions, rotations
+        return positions, self.reachable(rotations)
 
     def by_pose(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """A = ∂Φ/∂pose: equations by the rows of the twist."""
@@ -135,9 +138,7 @@ class TurningClosure(Closure):
 
     def residual(self, joints: Array, positions: Array, rotations: Array) -> Array:
         """The residual of the closure at a pose: lengths, then what the rotation is away from one that it can have."""
-        lengths = self._stated(joints, positions, rotations)
-        if 2 not in self.task:
-            lengths = np.hstack([lengths, positions[:, 2:]])
+        lengths = np.hstack([self._stated(joints, positions, rotations), np.delete(positions, self.task, axis=1)])
         return np.hstack([lengths, (rotations - self.reachable(rotations)).reshape(-1, 9)])
 
     def equations(self, joints: Array, positions: Array, rotations: Array) -> Array:
@@ -148,15 +149,39 @@ class TurningClosure(Closure):
         """The nearest rotation that the platform can have."""
         if len(self.axes_of_turn) == 3:
             left, _, right = np.linalg.svd(rotations)
-            return np.asarray(left @ right)
+            return self._twisted(np.asarray(left @ right))
         along, across = rotations[:, 0, 0] + rotations[:, 1, 1], rotations[:, 1, 0] - rotations[:, 0, 1]
         return _about(2, np.arctan2(across, along))
+
+    def _twisted(self, rotations: Array) -> Array:
+        """The rotations turned about the tool until the plane of a platform that only turns holds: a cos u + b sin u +
+        c = 0. Of its two roots the machine has the one where the plane's slope has the sign of that at home.
+        """
+        if not self._fixed:
+            return rotations
+        assert not self.task and len(self._fixed) == 1
+        ahead, across, back = (self._off(rotations @ _about(2, np.full(len(rotations), u))) for u in QUARTERS)
+        middle = (ahead + back) / 2.0
+        a, b = ahead - middle, across - middle
+        slope = self._off(self.home_rotation @ _about(2, np.array([np.pi / 2.0])))
+        swing = np.arccos(np.clip(-middle / np.hypot(a, b), -1.0, 1.0)) * -np.sign(slope)
+        return np.asarray(rotations @ _about(2, np.arctan2(b, a) + swing))
+
+    def _off(self, rotations: Array) -> Array:
+        """How far the fixed plane is missed."""
+        nothing = np.zeros((len(rotations), len(self.mechanism.joints)))
+        return self.at(self._fixed, nothing, np.tile(self.home_position, (len(rotations), 1)), rotations)[:, 0]
 
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees, at the poses of these axes."""
         rotations = self.poses(axes)[1]
         by_axes = derivative(lambda a, p, r: self._stated(self.joints(a), p, r), axes, positions, rotations)
-        return -np.linalg.solve(self.by_pose(self.joints(axes), positions, rotations), by_axes) / self.units
+        twist = -np.linalg.solve(self.by_pose(self.joints(axes), positions, rotations), by_axes) / self.units
+        if self.columns != [2]:
+            return twist
+        width = len(self.task)  # turns about the x and y of the flange tilt the tool
+        tilt = np.einsum("nij,nia->nja", rotations[:, :, :2], twist[:, width:])
+        return np.concatenate([twist[:, :width], tilt], axis=1)
 
     def indicators(self, joints: Array) -> Array:
         """The indicator of every branch at a pose, positive where its byte is 1."""

@@ -40,6 +40,16 @@ _HEXAGLIDE |= {f"rod_length_{i}": 620.0 + 3.0 * i for i in range(1, 7)} | {"home
 _HEXAGLIDE |= {f"rail_{i}_z": 2.0 * i for i in range(1, 7)}
 _HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
 
+_RODWRIST = {
+    f"{what}_{i}_{letter}": value
+    for what, points in (
+        ("base", ((-12.0, 45.0, -200.0), (-8.0, -44.0, -130.0))),
+        ("platform", ((-60.0, 45.0, 4.0), (-58.0, -46.0, 6.0))),
+    )
+    for i, point in enumerate(points, 1)
+    for letter, value in zip("xyz", point, strict=True)
+} | {"crank_length_1": 50.0, "crank_length_2": 48.0, "rod_length_1": 203.0, "rod_length_2": 135.0}
+
 
 def _anchors(what: str, *places: tuple[float, float, float]) -> dict[str, float]:
     """The fixed ends of struts or cables."""
@@ -152,6 +162,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Softkin_Hexaglide": _HEXAGLIDE,
     "Softkin_Planar_3RRR": _3RRR,
+    "Softkin_RodWrist": _RODWRIST,
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
     "Kin_Tripod_Linear": {
         "outer_radius": 300.0, "inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 30.0,

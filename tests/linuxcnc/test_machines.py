@@ -70,8 +70,7 @@ def test_a_machine_of_the_user(name: str) -> None:
         if hasattr(module.library, "kinematicsJacobian"):
             _assert_rates(module, axes, pose)
     assert compared >= 20
-    has_jacobian = mechanism.task.turning.value in ("none", "about z", "full") or words.orientation is Orientation.AXES
-    assert hasattr(module.library, "kinematicsJacobian") == has_jacobian
+    assert hasattr(module.library, "kinematicsJacobian") == (not mechanism.followed_turns)
 
 
 def _assert_rates(module: Module, axes: list[float], pose: dict[str, float]) -> None:

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
-from sympy import Expr, cos, pi, sin
+from sympy import Expr, Matrix, cos, pi, sin
 
 from derive.description.mechanism import (
+    ROTATION,
     Joint,
     Mechanism,
     Task,
@@ -56,6 +57,12 @@ def _arm(number: int, arm: Joint, shift: object = 0) -> tuple[object, object]:
     return x + shift + ARM * cos(arm), y + ARM * sin(arm)  # type: ignore[operator]
 
 
+_FIVE = ((-418.0, 325.0, -185.0), (418.0, 325.0, -160.0), (-418.0, -325.0, -68.0), (418.0, -325.0, -41.0),
+         (0.0, -493.0, -14.0))  # fmt: skip
+"""Of each strut x and y of its joint on the base, and where it ends on the spindle."""
+STRUTS = tuple(linear(f"L{k}", f"Strut {k}", domain=(0.0, 1e9)) for k in range(1, 6))
+FRAME = length("frame_height", "Height of the joints on the base", nominal=900.0)
+
 GUIDED: Mapping[str, Mechanism] = {
     "3-RPS on a raised base": Mechanism(
         name="Kin_RaisedRps",
@@ -101,6 +108,18 @@ GUIDED: Mapping[str, Mechanism] = {
         ),
         closure=(Z - LIFT - HEIGHT,),
         home=(0, 0, 0, 0),
+    ),
+    "pentapod, whose struts end on the spindle and do not feel its twist": Mechanism(
+        name="Kin_Pentapod",
+        joints=STRUTS,
+        parameters=(FRAME,),
+        task=Task("xyz", Turning.DIRECTION),
+        rods=tuple(
+            rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), s) for s, (x, y, z) in zip(STRUTS, _FIVE, strict=True)
+        ),
+        guides=(guide("twist", (0, 1, 0), tuple(ROTATION * Matrix([100, 0, 0]))),),
+        positive=STRUTS,
+        home=(0, 0, 400, 0, 0, 0),
     ),
     "plate on two cylinders along a skewed guide": Mechanism(
         name="Kin_SkewedGuide",

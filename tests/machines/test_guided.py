@@ -33,6 +33,7 @@ SOLUTIONS = {
     "Z3 head with slides": 4,
     "head in metres whose planes form a T, stated as equations": 4,
     "3-RRR on a lift": 7,
+    "pentapod, whose struts end on the spindle and do not feel its twist": 1,
     "plate on two cylinders along a skewed guide": 1,
 }
 """The most solutions in the assembly mode of the machine, at the poses where the witness counts them."""
@@ -280,13 +281,13 @@ def test_singular_poses_are_answered_or_refused(name: str) -> None:
     what is answered closes.
     """
     one, reached = guided(name), 0
-    position, _ = home_of(one)
+    position, zeros = home_of(one)[0], [0.0] * len(one.mechanism.joints)
     for about in (0, 1):
         for quarter in (0, 1, 2, 3):
             for twist in (0.0, 1.0, np.pi):
                 rows = rotation((about, quarter * np.pi / 2), (2, twist))
                 frame = softkin.Frame(tuple(position), tuple(map(tuple, rows)))
-                for axes in inverse_in_both(one.controller, one.robot, frame, [0.0] * 3, 1e-6 * one.size):
+                for axes in inverse_in_both(one.controller, one.robot, frame, zeros, 1e-6 * one.size):
                     reached += 1
                     if quarter == 0:
                         assert residual(one, np.array(axes), one.robot.forward(axes)[0]) < _CLOSED

@@ -13,6 +13,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.report.reference_calls import FRAME, Machine, machine_with
 from tests.mechanisms import catalogue, kinematics_of, named
+from tests.orthonormal import about
 from tests.page.reading import Values, parsed
 
 NAMES = tuple(mechanism.name for _, mechanism in catalogue())
@@ -78,6 +79,9 @@ def samples(name: str) -> dict[str, np.ndarray]:
         values[joint.reference.name] = values[joint.axis.name] + 2.0 * (joint not in kinematics.mechanism.held_joints)
         values[joint.turn.name] = np.zeros(len(rows))
     values |= {f"sigma_{n}": np.sign(v[rows]) for n, v in signs.items()}
+    if "twist" in kinematics.mechanism.passive:  # commanded is the same direction of the tool, with another twist
+        turned = np.stack([values[n] for n in FRAME[3:]], axis=1).reshape(-1, 3, 3) @ about(2, 25.0)
+        values |= {f"commanded_{n}": turned[:, k // 3, k % 3] for k, n in enumerate(FRAME[3:])}
     return {**made.values, **values}
 
 

@@ -16,6 +16,7 @@ from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.kinematics.search.choice import with_search
 from derive.kinematics.search.derivations import solve_both
 from derive.kinematics.solution import prepared
+from derive.plate.passive import solve_passive
 from derive.report.derived import equations_of
 from derive.solver.solve import Step
 from tests.mechanisms import kinematics_of, named
@@ -96,7 +97,8 @@ def test_the_meaning_of_a_branch_is_read(name: str) -> None:
 def _steps(name: str) -> list[tuple[Step, ...]]:
     mechanism = with_derived_assembly(with_search(prepared(named(name))))
     if mechanism.search is None:
-        return [solve_pose(mechanism).derivation.steps]
+        first = [solve_passive(mechanism).steps] if mechanism.passive else []
+        return [*first, solve_pose(mechanism).derivation.steps]
     both = solve_both(mechanism)
     return [found.derivation.steps for found in (both.closed, both.trial) if found is not None]
 

@@ -229,6 +229,7 @@ def test_every_call_ends(pairs: tuple[Pair, ...]) -> None:
 
 
 ROUNDING = 1e-9
+INSIDE = 0.02
 
 
 def rows(matrix: np.ndarray) -> Rows:
@@ -243,7 +244,7 @@ def offered(one: SerialPair) -> bool:
 
 def test_a_frame_from_real_is_answered_as_in_python(pairs: tuple[Pair, ...]) -> None:
     for one in (pairs[0], pairs[-1]):
-        for sample in one.regular[:3]:
+        for sample in [s for s in one.regular if _is_inside(one.robot, s.axes)][:3]:
             (position, rotation), own = one.robot.forward(sample.axes)
             for matrix in slightly_off(np.array(rotation)):
                 frame = position, rows(matrix)
@@ -251,6 +252,11 @@ def test_a_frame_from_real_is_answered_as_in_python(pairs: tuple[Pair, ...]) -> 
                 found = one.controller.inverse(*frame, own, sample.axes)
                 assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, matrix)
                 assert found[0] == asked(one.robot.inverse, (position, rotation), own, sample.axes)[0]
+
+
+def _is_inside(robot: softkin.Mechanism, axes: tuple[float, ...]) -> bool:
+    """Whether a pose is so far from the end of its reach that a tilt by 1e-4 does not leave it."""
+    return all(abs(m) > INSIDE for m in robot.singularity(axes).margins.values())
 
 
 def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...]) -> None:

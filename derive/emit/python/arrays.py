@@ -20,7 +20,7 @@ from derive.emit.python.program import (
     values_of,
 )
 from derive.ir.primitives import FUNCTIONS, KEYS, NearestPeriod
-from derive.ir.program import Call, Iterate, Let, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.symbols import START_POSITION, START_ROTATION, Flag, is_count, symbols_of
 from derive.ir.tree import If, Item, Tree, given_to, grouped, read_in
 from derive.kinematics.kinematics import Kinematics
@@ -85,13 +85,18 @@ def _statements(method: Method, constants: Collection[str]) -> list[str]:
 
 
 def values_of_a_row(kin: Kinematics) -> int:
-    """The number of values of one row in the inverse: inputs, intermediate values, results. A program that every pose
-    calls has its own values for every slot.
+    """The number of values of one row in the inverse: inputs, intermediate values, results, tables of linear equations.
+    A program that every pose calls has its own values for every slot.
     """
     called = {c.program.name for c in kin.branch.calls() if not (c.is_rare and c in kin.branch.body)}
     programs = [(kin.branch, 1), *((p, 2 ** len(kin.branches) if p.name in called else 1) for p in kin.shared)]
-    own = sum(slots * (len(p.inputs) + len(p.bound())) for p, slots in programs)
-    return own
+    return sum(slots * (len(p.inputs) + len(p.bound()) + _in_tables(p)) for p, slots in programs)
+
+
+def _in_tables(program: Program) -> int:
+    """The number of values in the tables of its linear equations, those in loops as well."""
+    steps = (s.step if isinstance(s, Iterate) else (s,) for s in program.body)
+    return sum(len(s.children()) for step in steps for s in step if isinstance(s, Solve))
 
 
 def array_arm_lines(

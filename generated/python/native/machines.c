@@ -48,6 +48,7 @@
 #include "polar_z.h"
 #include "pos_rrr.h"
 #include "rodpalletizer.h"
+#include "rodwrist.h"
 #include "scara2_z.h"
 #include "scara3_ccz.h"
 #include "scara3_z.h"
@@ -242,6 +243,7 @@ const softkin_native softkin_machines[] = {
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
     {"pos_rrr 3a83fecab7ffdb11", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
+    {"rodwrist 4efd0a5cae0097c6", &rodwrist_mechanism, {NULL, NULL}},
     {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},
     {"scara3_ccz 339819f261d7e7aa", &scara3_ccz_mechanism, {scara3_ccz_regular, scara3_ccz_regular_all}},
     {"scara3_z 4f68cce713dae8e2", &scara3_z_mechanism, {scara3_z_regular, scara3_z_regular_all}},

@@ -79,6 +79,7 @@ if TYPE_CHECKING:
     from softkin.polar_z import PolarZ
     from softkin.pos_rrr import PosRRR
     from softkin.rodpalletizer import RodPalletizer
+    from softkin.rodwrist import RodWrist
     from softkin.scara2_z import Scara2Z
     from softkin.scara3_ccz import Scara3CCZ
     from softkin.scara3_z import Scara3Z
@@ -167,6 +168,7 @@ __all__ = [
     "PolarZ",
     "PosRRR",
     "RodPalletizer",
+    "RodWrist",
     "Rotation",
     "Scara2Z",
     "Scara3CCZ",
@@ -253,6 +255,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
     "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),
     "Softkin_RodPalletizer": ("rodpalletizer", "RodPalletizer"),
+    "Softkin_RodWrist": ("rodwrist", "RodWrist"),
     "Kin_Scara2_Z": ("scara2_z", "Scara2Z"),
     "Kin_Scara3_CCZ": ("scara3_ccz", "Scara3CCZ"),
     "Kin_Scara3_Z": ("scara3_z", "Scara3Z"),

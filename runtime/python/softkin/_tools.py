@@ -35,7 +35,7 @@ def check_tool(robot: Mechanism, tool: Frame) -> None:
     why = ""
     if kind == DIRECTION and hypot(tool.rotation[0][2], tool.rotation[1][2], tool.rotation[2][2] - 1.0) > UNNOTICED:
         why = "the turn about the direction that it follows is passive: the tool may not be inclined"
-    elif robot.ROLE == "orientation":  # alone it follows rotations, and no position
+    elif {*"xyz"}.isdisjoint(robot.JACOBIAN_ROWS):  # it follows rotations, and no position
         return
     elif kind == DIRECTION and hypot(shift[0], shift[1]) > noticed:
         why = "the turn about the direction that it follows is passive: the tool may be shifted along z only"

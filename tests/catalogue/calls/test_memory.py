@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from tests.catalogue.calls.mountings import NAMES, poses, robots
+from tests.mechanisms import catalogue
 
 pytestmark = pytest.mark.broad
 
 MANY = 100_000
 MOST = 1.3
-SLOW = ("Kin_Ac6_RZRYRYRXRYRZ_J6Offset", "Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR")
+SLOW = tuple(m.name for _, m in catalogue() if m.is_platform or m.search)
 """Machines of which one row takes long."""
 
 

@@ -17,7 +17,7 @@ EVERYTHING = {m.name: m for _, m in catalogue()}
 POSITIONS = tuple(
     m for m in EVERYTHING.values() if m.task.position and m.task.turning in (Turning.NONE, Turning.ABOUT_Z)
 )
-ORIENTATIONS = tuple(m for m in EVERYTHING.values() if not m.task.position)
+ORIENTATIONS = tuple(m for m in EVERYTHING.values() if m.is_orientation)
 SHIFTS: dict[str, tuple[dict[str, float], ...]] = {
     "Kin_CAxis": ({},),
     "Kin_CAxis_Tool": ({}, {"tool_z": -60.0}, {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0}),

@@ -2,41 +2,52 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 from softkin import Status
 
+from derive.description.mechanism import Turning
 from tests.catalogue.refusals import status_of
 from tests.catalogue.turning.test_home import home_slot
 from tests.catalogue.turning_machines import TurningMachine, turning_machine
+from tests.orthonormal import rodrigues
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
 AWAY = 0.15
 """The distance from home at which the first leg ends, in reaches."""
+UPRIGHT = np.array([[0.0, 0.0, 1.0]])
+TILTS = np.array([[np.cos(angle), np.sin(angle), 0.0] for angle in np.radians((30.0, 120.0))])
 
 
 def at_its_end(machine: TurningMachine) -> tuple[TurningMachine, np.ndarray, np.ndarray]:
     """The machine with a first rod that just reaches a pose beside home, and that pose: the one of many around home
-    that is farthest from its base.
+    that is farthest from where the rod's other end can be.
     """
     positions, rotations = machine.closure.around_home(60, np.random.default_rng(67), size=AWAY)
     span = _across(machine, positions, rotations)
     home = _across(machine, machine.closure.home_position[None], machine.closure.home_rotation[None])[0]
     chosen = int(np.argmax(span))
     assert span[chosen] > home
-    crank = machine.given.get("arm_length_1", 0.0)
-    given = {**machine.given, "rod_length_1": float(span[chosen]) - crank}
+    given = {**machine.given, "rod_length_1": float(span[chosen])}
     return turning_machine(machine.mechanism, "ends", given), positions[chosen], rotations[chosen]
 
 
 def _across(machine: TurningMachine, positions: np.ndarray, rotations: np.ndarray) -> np.ndarray:
-    """The distance of the first rod's joint on the platform from its motor, or from its rail."""
-    first, joint = machine.mechanism.rods[0], machine.mechanism.joints[0]
+    """The least distance between the first rod's joints, wherever its own joint is: the squared distance is a sine of
+    an angle, and a parabola of a length.
+    """
+    first, joints = machine.mechanism.rods[0], np.zeros((len(positions), len(machine.mechanism.joints)))
     ends = [p - b for p, b in zip(first.plate, first.base, strict=True)]
-    kept = [sp.sympify(e).subs({sp.cos(joint.symbol): 0, sp.sin(joint.symbol): 0}) for e in ends]
-    kept = [e for e in kept if joint.symbol not in e.free_symbols]
-    joints = np.zeros((len(positions), len(machine.mechanism.joints)))
-    return np.linalg.norm(machine.closure.at(kept, joints, positions, rotations), axis=1)
+
+    def squared(value: float) -> np.ndarray:
+        joints[:, 0] = value
+        return np.sum(machine.closure.at(ends, joints, positions, rotations) ** 2, axis=1)
+
+    quarter = np.pi / 2.0 if machine.closure.angles[0] else machine.reach
+    back, there, ahead = (squared(k * quarter) for k in (-1, 0, 1))
+    middle, slope = (ahead + back) / 2.0, (ahead - back) / 2.0
+    if machine.closure.angles[0]:
+        return np.sqrt(middle - np.hypot(there - middle, slope))
+    return np.sqrt(there - slope**2 / (4.0 * (middle - there)))
 
 
 def test_at_the_end_of_a_leg_both_branches_answer_the_same(machines: tuple[TurningMachine, ...]) -> None:
@@ -59,25 +70,27 @@ def test_at_the_end_of_a_leg_both_branches_answer_the_same(machines: tuple[Turni
     status, text = controller.inverse(tuple(position), rotation.tolist(), own, reference)
     assert status == OK and text[: len(axes)] == pytest.approx(axes, abs=1e-9)
     assert controller.is_singular(axes)
-    outward = position - machine.closure.home_position
+    outward = position - machine.closure.home_position, rotation - machine.closure.home_rotation
     for step, expected in ((-1e-4, Status.OK), (1e-4, Status.UNREACHABLE)):
-        status = status_of(machine.robot.inverse, (position + step * outward, rotation), own)
-        assert status is expected
+        turned = machine.closure.reachable((rotation + step * outward[1])[None])[0]
+        assert status_of(machine.robot.inverse, (position + step * outward[0], turned), own) is expected
 
 
 @pytest.mark.slow("Hexaglide", "Planar")
 def test_a_path_into_a_type_2_singularity_is_stopped_before(machines: tuple[TurningMachine, ...]) -> None:
-    """The platform turns about z, in the configuration of home, until a leg ends or nothing holds it: until then it is
-    in the mode of the machine, and what stops it there is the margin, which has become small.
+    """The platform turns about z, or tilts where the tool's direction alone is followed, in the configuration of home,
+    until a leg ends or nothing holds it: until then it is in the mode of the machine, and what stops it there is the
+    margin, which has become small.
     """
     reasons: list[str] = []
     for machine in machines:
         own = home_slot(machine)
-        for side in (1.0, -1.0):
+        about = TILTS if machine.mechanism.task.turning is Turning.DIRECTION else UPRIGHT
+        for axis in (*about, *-about):
             left = 1.0
-            for angle in np.radians(np.arange(0.0, 179.0, 0.25)) * side:
-                turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]])
-                pose = (machine.closure.home_position, turn @ machine.closure.home_rotation)
+            for angle in np.radians(np.arange(0.0, 179.0, 0.25)):
+                turned = (rodrigues(axis, angle) @ machine.closure.home_rotation)[None]
+                pose = (machine.closure.home_position, machine.closure.reachable(turned)[0])
                 if status_of(machine.robot.inverse, pose, own) is not Status.OK:
                     reasons.append(str(machine.robot.diagnose(pose, own)))
                     assert "rods_dependent" not in reasons[-1] or left < 0.05
@@ -86,5 +99,5 @@ def test_a_path_into_a_type_2_singularity_is_stopped_before(machines: tuple[Turn
                 sides = machine.closure.side(machine.closure.joints(axes), *(p[None] for p in pose))
                 assert sides[0] > 0
                 left = sides[0] / machine.closure.at_home
-    assert len(reasons) == 2 * len(machines)
+    assert len(reasons) == 2 * len(about) * len(machines)
     assert any("rods_dependent" in reason for reason in reasons)

@@ -142,7 +142,7 @@ def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
 
 def image_with_orientation(loop: Loop, sample: Sample) -> None:
     """All rotations can be had: a space of the one that is asked for. One that turns about z has its headings."""
-    if loop.mechanism.task.turning is Turning.ABOUT_Z:
+    if loop.mechanism.task.turning is not Turning.FULL:
         SERIAL["GetFlangeOrientationImageWithOri"](loop, sample)  # type: ignore[arg-type]
         return
     for rows in (sample.rotation, NO_TURN, HALF_TURN):

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 9762
+    VALUES = 9840
 
     def step_on_closure(self, given: Values, status: Codes) -> Values:
         """A step of all joints towards the pose, and the error before it."""

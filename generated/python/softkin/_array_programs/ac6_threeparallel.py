@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 436
+    VALUES = 478
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""

@@ -34,7 +34,7 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 515
+    VALUES = 593
 
     def find_platform(self, given: Values, status: Codes) -> Values:
         """The pose of the platform at its axis values, the rows of A there, and their determinant."""

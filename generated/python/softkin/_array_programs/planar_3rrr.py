@@ -37,7 +37,7 @@ class ArrayPrograms(StartedPrograms):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 903
+    VALUES = 1008
     JACOBIAN_ROWS = (0, 1, 5)
 
     def find_platform(self, given: Values, status: Codes) -> Values:

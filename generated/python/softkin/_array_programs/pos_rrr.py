@@ -39,7 +39,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 421
+    VALUES = 445
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
