@@ -102,7 +102,7 @@ def _always_holds(mechanism: Mechanism, condition: sp.Basic) -> bool:
 
 
 def _range(parameter: Parameter) -> list[float]:
-    return [parameter.low, parameter.high] if parameter.fixed is None else [float(parameter.fixed)] * 2
+    return [parameter.low, parameter.high] if parameter.fixed is None else [float(parameter.nominal)] * 2
 
 
 def _not_negative(interval: mpmath.ctx_iv.ivmpf) -> mpmath.ctx_iv.ivmpf:

@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sympy import pi
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.dimensions import angle
-from derive.description.mechanism import Mechanism, Task, linear, radians
-from derive.geometry.frames import Rz, Tx, Tz
+from derive.description.dimensions import angle, distance
+from derive.description.mechanism import Mechanism, Task, Turning, linear, radians, rotary
+from derive.geometry.frames import Rx, Ry, Rz, Tx, Ty, Tz
 from derive.ir.interpret import run
 from derive.ir.program import Require, Status
 from derive.kinematics.build import build
@@ -17,6 +18,8 @@ from derive.kinematics.kinematics import Kinematics
 
 NUTATING = load(MECHANISMS / "softkin_nutatinghead_cb.py")
 X, Y, Z = linear("X", "Rails"), linear("Y", "Beam"), linear("Z", "Up")
+A1, A3, A4, A5 = (rotary(f"A{k}", f"turn {k}") for k in (1, 3, 4, 5))
+SIDE, FORE, TOOL = (distance(name, name, nominal=100.0) for name in ("side", "fore", "tool"))
 
 
 def nutating(low: float) -> Mechanism:
@@ -53,3 +56,15 @@ def test_the_set_up_refuses_what_parameters_decide(described: Callable[[float], 
     assert status(open_range, **{name: 0.0}) is Status.NOT_INITIALIZED
     assert status(open_range, **{name: 0.1}) is status(closed_range, **{name: 1.0}) is Status.OK
     assert status(closed_range, **{name: 0.9}) is Status.NOT_INITIALIZED
+
+
+def test_an_angle_that_the_description_states_as_a_number_has_no_range() -> None:
+    """An angle in sevenths of a turn is a symbol over that of a degree; the set-up asks lengths beside it."""
+    mechanism = Mechanism(
+        name="Kin_Sevenths",
+        joints=(A1, Z, A3, A4, A5),
+        parameters=(SIDE, FORE, TOOL),
+        chain=Rx(A1) * Ty(SIDE) * Tz(Z) * Rx(A3) * Ty(FORE) * Ry(A4) * Tx(FORE) * Rz(5 * pi / 7) * Ry(A5) * Tz(TOOL),
+        task=Task("xyz", Turning.DIRECTION),
+    )
+    assert build(mechanism).mechanism.search is None

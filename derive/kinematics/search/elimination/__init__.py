@@ -9,6 +9,7 @@ arm closes: it is the wave of the search. There, d and e follow from the vector 
 
 line: values of a line with a point, and the motions that change them linearly
 ring: the joints and the frames between them, in a circle
+oblique: slides at any angle to the axes before and behind them
 numbers: the equations at poses of random machines
 order: the choice of the six letters, and of the equations
 equations: the statements that compute the six equations

@@ -16,6 +16,7 @@ from derive.geometry.frames import Factor, Motion
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.kinematics.search.elimination.line import Move, rotation, shift, turn
+from derive.kinematics.search.elimination.oblique import Oblique, gathered, turned_to
 from derive.kinematics.search.programs import GOAL
 
 JOINTS = 6
@@ -95,7 +96,9 @@ class Ring:
 
 
 def ring_of(mechanism: Mechanism) -> Ring | None:
-    """The ring of an arm; None for a mechanism that is no arm with six joints, each in one factor of its chain."""
+    """The ring of an arm; None for a mechanism that is no arm with six joints, each in one factor of its chain, or a
+    slide that goes one way.
+    """
     chain, joints = mechanism.chain, mechanism.solved_joints
     is_whole = mechanism.task.turning is Turning.FULL and mechanism.task.position == "".join(COORDINATE_NAMES)
     if chain is None or not is_whole or len(joints) != JOINTS:
@@ -103,7 +106,14 @@ def ring_of(mechanism: Mechanism) -> Ring | None:
     lets: dict[sp.Symbol, Let] = {}
     places: list[Place] = []
     links: list[list[Fixed]] = [[]]
-    for factor in chain.factors:
+    slides = [j.symbol for j in joints if not j.is_angle]
+    for factor in gathered(chain.factors, slides, {j.symbol for j in joints}):
+        if isinstance(factor, Oblique):
+            slide, before, behind = _oblique(mechanism, factor, lets)
+            places.append(slide)
+            links[-1] += before
+            links.append(behind)
+            continue
         moving = [j for j in joints if j.symbol in factor.amount.free_symbols]
         moved = [place for j in moving if (place := _place(factor, j)) is not None]
         if len(moving) > 1 or len(moved) < len(moving):
@@ -119,6 +129,22 @@ def ring_of(mechanism: Mechanism) -> Ring | None:
     first, *others, last = links
     found = (*map(tuple, others), (*last, *_pose(), *first))
     return Ring(tuple(places), found, tuple(lets.values()))
+
+
+def _oblique(
+    mechanism: Mechanism, slide: Oblique, lets: dict[sp.Symbol, Let]
+) -> tuple[Place, list[Fixed], list[Fixed]]:
+    """A slide along any direction: its place, the frames in front of it, and those that lead back."""
+    joint = next(j for j in mechanism.solved_joints if j.symbol == slide.slide)
+    found, direction = named_trigonometry(mechanism, list(slide.direction))
+    read = set().union(*(v.free_symbols for v in direction))
+    lets.update({let.name: let for let in found if let.name in read})
+    turned, before = turned_to(*direction), list[Fixed]()
+    for k, (axis, *values) in enumerate(turned.turns, 1):
+        names = [real(f"{word}_{k}_to_{joint.key}") for word in ("cosine", "sine")]
+        lets.update({name: Let(name, value) for name, value in zip(names, values, strict=True)})
+        before.append(Fixed(turn(axis, *names), turn(axis, names[0], -names[1])))
+    return Place(joint, turned.axis, 1), before, [f.inverse for f in reversed(before)]
 
 
 def _place(factor: Factor, joint: Joint) -> Place | None:
