@@ -1,7 +1,6 @@
 """What the build refuses: programs that contradict each other, and chains without a solution, within its bounds."""
 
 import random
-import re
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,7 +14,19 @@ import sympy as sp
 from sympy import cos
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, X, Y, length, rotary
+from derive.description.mechanism import (
+    DescriptionError,
+    Joint,
+    Mechanism,
+    Parameter,
+    Task,
+    Turning,
+    X,
+    Y,
+    length,
+    linear,
+    rotary,
+)
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.faults import GenerationError
@@ -197,13 +208,10 @@ def random_arm(seed: int, axes: int, *, has_parameters: bool) -> Mechanism:
 @pytest.mark.slow
 def test_a_random_arm_with_five_axes() -> None:
     start = time.process_time()
-    with pytest.raises(Unsolved) as refusal, at_most(6 * MOST_TERMS) as work:
-        build(validate(random_arm(1, 5, has_parameters=False)))
+    with at_most(6 * MOST_TERMS) as work:
+        search = build(validate(random_arm(1, 5, has_parameters=False))).mechanism.search
     assert time.process_time() - start < _SECONDS
-    assert 0 < work.done <= 6 * MOST_TERMS
-    said = str(refusal.value)
-    assert re.search(r"(A\d, ){2}A\d (were parallel|met in one point), which they miss by \d", said), said
-    assert len(said) < 900
+    assert search is not None and search.is_eliminated and 0 < work.done <= 6 * MOST_TERMS
 
 
 @pytest.mark.long
@@ -243,21 +251,22 @@ def test_the_stages_behind_the_solver_share_the_bound(monkeypatch: pytest.Monkey
         build(machine)
 
 
-def five(chain: Chain) -> str:
-    """Why five axes with a direction are refused."""
-    task = Task("xyz", Turning.DIRECTION)
+def test_a_tool_beside_the_last_of_five_axes() -> None:
+    """Two slides beside three turns are not searched; what would help is told. Five turns are."""
+    x, y = linear("X", "carriage"), linear("Y", "quill")
     with pytest.raises(Unsolved) as refusal:
-        build(validate(Mechanism(name="Five", joints=J[:5], chain=chain, task=task)))
-    return str(refusal.value)
-
-
-@pytest.mark.long
-def test_three_parallel_axes_are_told_to_be_so_and_a_task_that_fits() -> None:
+        chain = Tx(x) * Rz(J[1]) * Ty(50) * Ry(J[2]) * Tx(70) * Rx(J[3]) * Ty(80) * Tz(y) * Tx(30) * Ry(1)
+        build(pointing((x, *J[1:4], y), chain))
+    said = str(refusal.value)
+    assert "the axes of A2, A3, A4 met in one point, which they miss by 50" in said
+    assert 'with task=Task("xyz", Turning.NONE), held=(A4, Y) these joints are solved' in said
     upper = Rz(J[0]) * Tz(310) * Ry(J[1]) * Tz(260) * Ry(J[2]) * Tx(230) * Ry(J[3]) * Tx(75)
-    said = five(upper * Rx(J[4]) * Ty(35) * Tx(45))
-    assert "the axes of A2, A3, A4 are parallel, which is not enough" in said
-    assert "met the axis of A5, which it misses by 35" in said
-    assert 'with task=Task("xyz", Turning.NONE), held=(A4, A5) these joints are solved' in said
+    assert build(pointing(J[:5], upper * Rx(J[4]) * Ty(35) * Tx(45))).mechanism.search is not None
+
+
+def pointing(joints: tuple[Joint, ...], chain: Chain) -> Mechanism:
+    """A machine whose direction is commanded."""
+    return validate(Mechanism(name="Five", joints=joints, chain=chain, task=Task("xyz", Turning.DIRECTION)))
 
 
 def test_the_amount_by_which_axes_nearly_meet() -> None:

@@ -28,14 +28,15 @@ pytestmark = pytest.mark.slow
 LENGTHS = tuple(length(f"l{k}", f"length {k}", nominal=100.0 + 17.0 * k) for k in range(14))
 JOINTS = tuple(rotary(f"A{k}", f"axis {k}", value=f"q{k}") for k in range(1, 8))
 A1, A2, A3, A4, A5, A6, A7 = JOINTS
-TRACK = linear("E1", "track")
+TRACK, QUILL = linear("E1", "track"), linear("E2", "quill")
 L = LENGTHS
 
 _SHOULDER_AND_ARM = Rz(A1) * Tz(L[0]) * Ry(A2) * Tz(L[1]) * Ry(A3) * Txyz(L[3], 0, L[2])
-_BESIDE = (
-    "it would help if the axes of A3, A4, A5 met in one point, which they miss by 151, "
-    "or if the line of the tool, through its point, met the axis of A5, which it misses by 185; "
-    'with task=Task("xyz", Turning.NONE), held=(A4, A5) these joints are solved'
+_WRIST_BETWEEN_SLIDES = Rz(A1) * Ty(L[0]) * Ry(A2) * Tx(L[1]) * Rx(A3) * Ty(L[2])
+_NO_POINT = (
+    "it would help if the axes of A1, A2, A3 met in one point, which they miss by 100, "
+    'or if the axes of A1, A2, A3 were parallel, which they miss by 90°; with task=Task("xyz", Turning.NONE), '
+    "held=(A3, E2) these joints are solved"
 )
 _TOO_MANY = (
     "one joint too many: the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and 7 joints are to be "
@@ -58,9 +59,13 @@ def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) 
 
 
 REFUSED = {
-    "five axes with a tool beside the last": (
-        arm(_SHOULDER_AND_ARM * Rx(A4) * Ty(L[4]) * Ry(A5) * Tx(L[5]), JOINTS[:5], Turning.DIRECTION),
-        f"5 unknowns in 3 equations (x, y, z) and the commanded direction; {_BESIDE}",
+    "three turns between two slides": (
+        arm(
+            Tx(TRACK) * _WRIST_BETWEEN_SLIDES * Tz(QUILL) * Tx(L[3]) * Ry(1),
+            (TRACK, A1, A2, A3, QUILL),
+            Turning.DIRECTION,
+        ),
+        _NO_POINT,
     ),
     "seven axes": (
         arm(Rz(A1) * Ry(A2) * Rz(A3) * Tz(L[0]) * Ry(A4) * Rz(A5) * Tz(L[1]) * Ry(A6) * Rz(A7) * Tz(L[2]), JOINTS),
