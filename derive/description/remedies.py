@@ -77,6 +77,10 @@ REMEDIES: tuple[tuple[str, str], ...] = (
         r"the home pose has \d+ assembly modes",
         "choose a home= at which every rod has a side, and no two legs are in line",
     ),
+    (
+        r"the way back: error inf",
+        "where some lengths of that machine are 0, state those that never are by length(…), or hold a joint",
+    ),
     (r"closure equations for \d+ commanded", "state one equation for each commanded coordinate"),
     (r"conditions are left, not one|may be out of reach in its", "search another joint, or leave search= out"),
     (r"is taken by|declares ", ""),

@@ -177,7 +177,7 @@ EVERYWHERE = (
 
 def test_every_loop_is_here() -> None:
     """Every mechanism with rods is compared."""
-    assert len(LOOPS) == 18
+    assert len(LOOPS) == 19
 
 
 @pytest.mark.parametrize("mechanism", POSITION_KINEMATICS, ids=lambda m: m.name)

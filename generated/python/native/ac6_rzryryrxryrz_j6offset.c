@@ -1146,8 +1146,9 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried*sin_q1_tried)
         *one_by_distance_q1_tried;
   } else {
-    cos_q1_tried = cos(reference_a1); /* at a singularity: the angle of the reference */
-    sin_q1_tried = sin(reference_a1);
+    const double real_of_side = side;
+    cos_q1_tried = cos(reference_a1)*real_of_side; /* at a singularity: the angle of the reference */
+    sin_q1_tried = real_of_side*sin(reference_a1);
     slope_cos_q1_tried = 0.0;
     slope_sin_q1_tried = 0.0;
   }
@@ -1193,7 +1194,9 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   }
   const double one_by_sum_q3_tried = 1.0/divisor_of_cos_q3_tried;
   const double cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried;
-  const double sign_elbow_tried = (side*wanted_elbow); /* elbow: +1 up, -1 down */
+  const bool cos_q1_is_free_tried = distance_q1_tried <= k->machine_scale_times_free_angle;
+  /* elbow: +1 up, -1 down */
+  const double sign_elbow_tried = ((!cos_q1_is_free_tried ? side : 1)*wanted_elbow);
   /* sine squared, times the squared scale */
   const double sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried;
   const double root_of_sin_swing_q3_tried = softkin_root(sine_square_q3_tried);
@@ -1276,7 +1279,21 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried)
       *cos_q6_tried + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried;
   const double cos_swing_q3_tried_squared = cos_swing_q3_tried*cos_swing_q3_tried;
-  const double room_tried = 1.000000000001 - cos_swing_q3_tried_squared;
+  const double sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001;
+  double room_tried;
+  if (cos_q1_is_free_tried) {
+    if (-sum_in_room_tried <= 0.0) {
+      room_tried = -sum_in_room_tried <= 0.0 ? -sum_in_room_tried : 0.0;
+    } else {
+      room_tried = 0.0;
+    }
+  } else {
+    if (-sum_in_room_tried <= 1.0) {
+      room_tried = -sum_in_room_tried <= 1.0 ? -sum_in_room_tried : 1.0;
+    } else {
+      room_tried = 1.0;
+    }
+  }
   const double turning_length_3_tried = softkin_root(0.2499999999989999 + cos_swing_q3_tried_squared);
   const double slope_turning_length_3_tried = turning_length_3_tried > 0.0
       ? slope_cos_swing_q3_tried*cos_swing_q3_tried
@@ -1321,8 +1338,9 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried/distance_q1_tried;
   } else {
-    cos_q1_tried = cos(reference_a1); /* at a singularity: the angle of the reference */
-    sin_q1_tried = sin(reference_a1);
+    const double real_of_side = side;
+    cos_q1_tried = cos(reference_a1)*real_of_side; /* at a singularity: the angle of the reference */
+    sin_q1_tried = real_of_side*sin(reference_a1);
   }
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k->a1;
@@ -1343,7 +1361,9 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double divisor_of_cos_q3_tried = sum_q3_tried > 0.0 ? sum_q3_tried : 1.0;
   const double cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried;
-  const double sign_elbow_tried = (side*wanted_elbow); /* elbow: +1 up, -1 down */
+  const bool cos_q1_is_free_tried = distance_q1_tried <= k->machine_scale_times_free_angle;
+  /* elbow: +1 up, -1 down */
+  const double sign_elbow_tried = ((!cos_q1_is_free_tried ? side : 1)*wanted_elbow);
   /* sine squared, times the squared scale */
   const double sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried;
   const double sin_swing_q3_tried = 2.0*softkin_root(sine_square_q3_tried)*sign_elbow_tried

@@ -131,7 +131,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset b9fadeb906e3cad8"
+    KEY = "ac6_rzryryrxryrz_j6offset 1344c747e65d78c1"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1555,8 +1555,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q1_tried - slope_distance_q1_tried * sin_q1_tried
             ) * one_by_distance_q1_tried
         else:
-            cos_q1_tried = cos(reference_a1)
-            sin_q1_tried = sin(reference_a1)
+            cos_q1_tried = side * cos(reference_a1)
+            sin_q1_tried = side * sin(reference_a1)
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
         # coordinate of the point that the remaining links must reach
@@ -1605,7 +1605,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_divisor_of_cos_q3_tried = 0.0
         one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        cos_q1_is_free_tried = distance_q1_tried <= machine_scale_times_free_angle
+        sign_elbow_tried = (side if not cos_q1_is_free_tried else 1) * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
@@ -1713,7 +1714,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
         cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
-        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001
+        if cos_q1_is_free_tried:
+            if -sum_in_room_tried <= 0.0:
+                room_tried = -sum_in_room_tried if -sum_in_room_tried <= 0.0 else 0.0
+            else:
+                room_tried = 0.0
+        else:
+            if -sum_in_room_tried <= 1.0:
+                room_tried = -sum_in_room_tried if -sum_in_room_tried <= 1.0 else 1.0
+            else:
+                room_tried = 1.0
         turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
         slope_turning_length_3_tried = (
             slope_cos_swing_q3_tried
@@ -1774,8 +1785,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             across_q1_tried = wanted_shoulder * wrist_y_tried
             sin_q1_tried = across_q1_tried / distance_q1_tried
         else:
-            cos_q1_tried = cos(reference_a1)
-            sin_q1_tried = sin(reference_a1)
+            cos_q1_tried = side * cos(reference_a1)
+            sin_q1_tried = side * sin(reference_a1)
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - a1
         wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * j6_offset_x - d6 * goal_r33
@@ -1792,7 +1803,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        cos_q1_is_free_tried = distance_q1_tried <= machine_scale_times_free_angle
+        sign_elbow_tried = (side if not cos_q1_is_free_tried else 1) * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = (

@@ -278,6 +278,19 @@ def test_regular_poses_at_right_angles(lateral: float, lengths: dict[str, float]
     assert np.abs(turned - rotations).max() < 1e-10
 
 
+@pytest.mark.parametrize("lateral", (60.0, 150.0))
+def test_a_free_first_axis_is_turned_to_where_the_pose_is_met(lateral: float) -> None:
+    """The wrist on the first axis, which is free in a trial: at the reference, or half a turn on."""
+    lengths, rng = {**ARM, "a1": 0.0, "a3": 0.0}, np.random.default_rng(20)
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**lengths, j6_offset_x=lateral)
+    near = rng.choice((-1.0, 1.0), (800, 6)) * 10.0 ** rng.uniform(-13.0, -1.0, (800, 6))
+    axes = 90.0 * rng.integers(-2, 3, (800, 6)) + np.where(rng.random((800, 6)) < 0.5, 0.0, near)
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, np.zeros_like(axes))
+    assert (statuses == Status.OK).all(), axes[statuses != Status.OK][:1].tolist()
+    assert np.abs(robot.forward_batch(found)[0] - positions).max() < 1e-6
+
+
 @pytest.mark.parametrize("away", (1e6, 9e8))
 def test_a_reference_many_turns_away_loses_no_pose(away: float) -> None:
     case = planted("anywhere", 60.0, 40, 19)

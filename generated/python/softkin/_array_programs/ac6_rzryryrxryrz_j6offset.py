@@ -30,7 +30,7 @@ from softkin._array import (
 from softkin._types import Status
 
 if TYPE_CHECKING:
-    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector
+    from softkin._array import Codes, Matrix, Real, Reals, Rotation, Signs, Turns, Values, Vector, Whole
     from softkin.ac6_rzryryrxryrz_j6offset import Constants
 
 
@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 9840
+    VALUES = 9847
 
     def step_on_closure(self, given: Values, status: Codes) -> Values:
         """A step of all joints towards the pose, and the error before it."""
@@ -1452,9 +1452,9 @@ class ArrayPrograms(Programs):
             0.0,
         )
 
-        def elsewhere_cos_q1_tried(reference_a1: Real) -> Reals:
-            cos_q1_tried = cos(reference_a1)
-            sin_q1_tried = sin(reference_a1)
+        def elsewhere_cos_q1_tried(reference_a1: Real, side: Whole) -> Reals:
+            cos_q1_tried = side * cos(reference_a1)
+            sin_q1_tried = side * sin(reference_a1)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
@@ -1471,7 +1471,7 @@ class ArrayPrograms(Programs):
             distance_q1_tried > k.machine_scale_times_free_angle,
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1,),
+            (reference_a1, side),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1517,7 +1517,8 @@ class ArrayPrograms(Programs):
         slope_divisor_of_cos_q3_tried = select(holds, slope_divisor_of_cos_q3_tried, 0.0)
         one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        cos_q1_is_free_tried = distance_q1_tried <= k.machine_scale_times_free_angle
+        sign_elbow_tried = select(opposite(cos_q1_is_free_tried), side, 1) * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
@@ -1632,7 +1633,16 @@ class ArrayPrograms(Programs):
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
         cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
-        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001
+
+        def elsewhere_room_tried(sum_in_room_tried: Real) -> Reals:
+            room_tried = select(
+                -sum_in_room_tried <= 1.0, select(-sum_in_room_tried <= 1.0, -sum_in_room_tried, 1.0), 1.0
+            )
+            return (room_tried,)
+
+        room_tried = select(-sum_in_room_tried <= 0.0, select(-sum_in_room_tried <= 0.0, -sum_in_room_tried, 0.0), 0.0)
+        (room_tried,) = elsewhere(cos_q1_is_free_tried, (room_tried,), elsewhere_room_tried, (sum_in_room_tried,))
         turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
         slope_turning_length_3_tried = select(
             turning_length_3_tried > 0.0,
@@ -1684,9 +1694,9 @@ class ArrayPrograms(Programs):
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
 
-        def elsewhere_cos_q1_tried(reference_a1: Real) -> Reals:
-            cos_q1_tried = cos(reference_a1)
-            sin_q1_tried = sin(reference_a1)
+        def elsewhere_cos_q1_tried(reference_a1: Real, side: Whole) -> Reals:
+            cos_q1_tried = side * cos(reference_a1)
+            sin_q1_tried = side * sin(reference_a1)
             return (cos_q1_tried, sin_q1_tried)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
@@ -1698,7 +1708,7 @@ class ArrayPrograms(Programs):
             distance_q1_tried > k.machine_scale_times_free_angle,
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1,),
+            (reference_a1, side),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1716,7 +1726,8 @@ class ArrayPrograms(Programs):
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
-        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
+        cos_q1_is_free_tried = distance_q1_tried <= k.machine_scale_times_free_angle
+        sign_elbow_tried = select(opposite(cos_q1_is_free_tried), side, 1) * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
