@@ -26,7 +26,10 @@ from tests.orthonormal import rodrigues
 Array = NDArray[np.float64]
 OWN = ("Z3 head with slides", "3-RRR on a lift")
 """Machines that are in no catalogue: their loops leave out coordinates that the task does not command."""
-CATALOGUE = tuple(m.name for _, m in catalogue() if m.is_platform)
+PLATFORMS = tuple(m for _, m in catalogue() if m.is_platform)
+CATALOGUE = tuple(m.name for m in PLATFORMS if m.task.position)
+TURNING = tuple(m.name for m in PLATFORMS if not m.task.position)
+"""Machines that only turn; all poses of these are found again."""
 _DRAWN, _WANTED, _STEP = 3000, 12, 1e-5
 _REGULAR = 0.05
 """The least margin of a pose whose Jacobian is compared."""
@@ -100,7 +103,8 @@ class Platform:
         task = self.mechanism.task
         apart = [abs(frame.position["xyz".index(c)] - other.position["xyz".index(c)]) for c in task.position]
         turned = np.abs(np.array(frame.rotation) - np.array(other.rotation))
-        return max(apart) < size and turned[:, 2].max() < 1e-4 and (task.position == "z" or turned.max() < 1e-4)
+        is_direction = task.turning is Turning.DIRECTION
+        return max(apart, default=0.0) < size and turned[:, 2].max() < 1e-4 and (is_direction or turned.max() < 1e-4)
 
     def _solved(self, frame: Frame, solution: softkin.Solution) -> Solved | None:
         """The solution with its Jacobian; None near a singularity or the edge of the workspace."""
@@ -156,7 +160,7 @@ def _moved(frame: Frame, row: str, step: float) -> Frame:
 @cache
 def platform(name: str) -> Platform:
     """A machine of the catalogue, or one of its own."""
-    if name in CATALOGUE:
+    if name in (*CATALOGUE, *TURNING):
         mechanism = next(m for _, m in catalogue() if m.name == name)
         robot_class = softkin.catalogue()[name]
         parts: dict[str, Part] = {}

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from softkin import Frame, KinematicsError, Status
 
 from tests.catalogue.refusals import refusal
-from tests.machines.other_poses import CATALOGUE, OWN, Platform, Solved, platform
+from tests.machines.other_poses import CATALOGUE, OWN, TURNING, Platform, Solved, platform
 from tests.machines.spoken import asked_in
 from tests.text.controller import OK, UNREACHABLE, Controller
 from tests.text.units import compiled_text, text_of
@@ -126,6 +126,14 @@ def test_the_header_states_how_many_are_found_again(name: str) -> None:
             found += sum(s.status is Status.OK for s in one.robot.inverse_all(frame))
     assert reached >= 60
     assert abs(100.0 * found / reached - float(stated[1])) < 150.0 / np.sqrt(reached) + 1.0
+
+
+@pytest.mark.parametrize("name", TURNING)
+def test_of_what_only_turns_every_pose_is_found_again(name: str) -> None:
+    one = platform(name)
+    assert "and all within twice as much" in " ".join(str(sys.modules[type(one.robot).__module__].__doc__).split())
+    lost, kept = one.poses
+    assert not lost and len(kept) >= 3
 
 
 def test_a_rod_at_its_fold_is_kept() -> None:
