@@ -278,7 +278,7 @@ def test_regular_poses_at_right_angles(lateral: float, lengths: dict[str, float]
     assert np.abs(turned - rotations).max() < 1e-10
 
 
-@pytest.mark.parametrize("lateral", (60.0, 150.0))
+@pytest.mark.parametrize("lateral", (150.0,))
 def test_a_free_first_axis_is_turned_to_where_the_pose_is_met(lateral: float) -> None:
     """The wrist on the first axis, which is free in a trial: at the reference, or half a turn on."""
     lengths, rng = {**ARM, "a1": 0.0, "a3": 0.0}, np.random.default_rng(20)
