@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -18,7 +18,7 @@ from derive.ir.constants import (
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select, Wrap, larger
-from derive.ir.program import Let, Output, Program, Solve, Statement, rewritten
+from derive.ir.program import Call, Let, Output, Program, Solve, Statement, rewritten
 from derive.ir.symbols import (
     COORDINATE_NAMES,
     ROTATION_ENTRIES,
@@ -40,6 +40,8 @@ ERROR = real("error")
 _SHRINKING = real("shrinking")
 IS_NEWTON = flag("is_newton")
 """Whether a step is one of Newton's method."""
+SLOW = sp.Float("0.9")
+"""Where a damped step leaves more than this share of the error, one of Newton's method follows."""
 FOUND = flag("found")
 """Whether there is a root on the wanted branch."""
 _ZERO = sp.Integer(0)
@@ -66,6 +68,19 @@ def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
     outputs = [Output(begun(j.symbol).name, Wrap(v) if j.is_angle else v) for j, v in solved]
     program = normalise("joints_at", trial.statements, outputs)
     return replace(program, summary="The joints with the searched one known")
+
+
+def call_with(
+    program: Program,
+    arguments: Sequence[sp.Symbol],
+    given: Mapping[sp.Symbol, sp.Expr],
+    names: Callable[[str], sp.Symbol],
+    wanted: sp.Basic = sp.true,
+) -> Call:
+    """A call of a step with arguments of the caller as they are, and others that are given. names: of its outputs."""
+    own = {s: s for s in program.inputs if s in arguments} | dict(given)
+    pairs = tuple((s, own[s]) for s in program.inputs if s in own)
+    return Call(program, pairs, tuple(names(o.name) for o in program.outputs), wanted=wanted)
 
 
 def begun(joint: sp.Symbol) -> sp.Symbol:

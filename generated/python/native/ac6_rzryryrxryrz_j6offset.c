@@ -449,23 +449,22 @@ static softkin_status find_meet_from_reference(const void *machine, const double
       reference_a5 = given[16], reference_a6 = given[17];
   const int wanted_crossing = (int)given[18], wanted_elbow = (int)given[19],
       wanted_shoulder = (int)given[20], wanted_wrist = (int)given[21];
-  const double shared_value = softkin_angle_of(sin(reference_a1), cos(reference_a1));
-  const double shared_value_2 = softkin_angle_of(sin(reference_a2), cos(reference_a2));
-  const double shared_value_3 = softkin_angle_of(sin(reference_a3), cos(reference_a3));
-  const double shared_value_4 = softkin_angle_of(sin(reference_a4), cos(reference_a4));
-  const double shared_value_5 = softkin_angle_of(sin(reference_a5), cos(reference_a5));
-  const double shared_value_6 = softkin_angle_of(sin(reference_a6), cos(reference_a6));
+  const double begun_q1 = softkin_angle_of(sin(reference_a1), cos(reference_a1));
+  const double begun_q2 = softkin_angle_of(sin(reference_a2), cos(reference_a2));
+  const double begun_q3 = softkin_angle_of(sin(reference_a3), cos(reference_a3));
+  const double begun_q4 = softkin_angle_of(sin(reference_a4), cos(reference_a4));
+  const double begun_q5 = softkin_angle_of(sin(reference_a5), cos(reference_a5));
+  const double begun_q6 = softkin_angle_of(sin(reference_a6), cos(reference_a6));
   /* one step towards the pose */
-  double followed_q1 = shared_value;
-  double followed_q2 = shared_value_2;
-  double followed_q3 = shared_value_3;
-  double followed_q4 = shared_value_4;
-  double followed_q5 = shared_value_5;
-  double followed_q6 = shared_value_6;
+  double followed_q1 = begun_q1;
+  double followed_q2 = begun_q2;
+  double followed_q3 = begun_q3;
+  double followed_q4 = begun_q4;
+  double followed_q5 = begun_q5;
+  double followed_q6 = begun_q6;
   double error_before = 9.0;
-  int steps_left = 64;
   bool is_newton = false;
-  double error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, shared_sum;
+  double error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, way_from_reference;
   bool newton_next;
   for (int pass = 0; pass < 65; pass += 1) {
     double results[7];
@@ -483,11 +482,10 @@ static softkin_status find_meet_from_reference(const void *machine, const double
     moved_q4 = results[4];
     moved_q5 = results[5];
     moved_q6 = results[6];
+    way_from_reference = fabs(begun_q1 - moved_q1) + fabs(begun_q2 - moved_q2) + fabs(begun_q3 - moved_q3)
+        + fabs(begun_q4 - moved_q4) + fabs(begun_q5 - moved_q5) + fabs(begun_q6 - moved_q6);
     newton_next = (!is_newton) && (error > 0.9*error_before);
-    shared_sum = fabs(moved_q1 - shared_value) + fabs(moved_q2 - shared_value_2)
-        + fabs(moved_q3 - shared_value_3) + fabs(moved_q4 - shared_value_4) + fabs(moved_q5 - shared_value_5)
-        + fabs(moved_q6 - shared_value_6);
-    if ((error <= 1e-14) || (shared_sum > 0.1) || (steps_left <= 0) || (error > 0.999*error_before)
+    if ((error <= 1e-14) || (way_from_reference > 0.1) || (error > 0.999*error_before)
         || ((error <= 1e-11) && (2.0*error > error_before))) {
       break;
     }
@@ -498,11 +496,10 @@ static softkin_status find_meet_from_reference(const void *machine, const double
     followed_q5 = moved_q5;
     followed_q6 = moved_q6;
     error_before = error;
-    steps_left = steps_left - 1;
     is_newton = newton_next;
   }
   double results_of_2[1] = {0.0};
-  if (error <= 1e-11 && shared_sum <= 0.1) {
+  if (error <= 1e-11 && way_from_reference <= 0.1) {
     const double arguments_of_2[] = {followed_q1, followed_q2, followed_q3, followed_q4, followed_q5,
         wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist};
     const softkin_status status_of_2 = find_is_on_branch(k, arguments_of_2, results_of_2, why);

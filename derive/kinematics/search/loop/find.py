@@ -60,7 +60,18 @@ from derive.kinematics.search.loop.twins import (
     twin_now,
     twins_now,
 )
-from derive.kinematics.search.programs import ERROR, FITS, FOUND, IS_NEWTON, LOOKED_FOR, START, begun, moved_to
+from derive.kinematics.search.programs import (
+    ERROR,
+    FITS,
+    FOUND,
+    IS_NEWTON,
+    LOOKED_FOR,
+    SLOW,
+    START,
+    begun,
+    call_with,
+    moved_to,
+)
 
 FIND_ROOT = "find_root"
 """The name of the program."""
@@ -97,8 +108,6 @@ _NEAR = sp.Float("1e-3")
 """In a narrow part steps on the closure begin only where the residual of the branch is at most this."""
 _ROOM = sp.Float("1e-6")
 """Where a step has more room, its two roots are too far apart for one to be on the branch of the other."""
-_SLOW = sp.Float("0.9")
-"""Where a damped step leaves more than this share of the error, one of Newton's method follows."""
 _SAME = sp.Float("1e-12")
 """Joint values this near (radians) are the same: from there the closure is met once. In a narrow part none are."""
 _MOVED = sp.Float("1e-8")
@@ -180,12 +189,8 @@ def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.E
 def _call(
     program: Program, arguments: Sequence[sp.Symbol], given: Mapping[sp.Symbol, sp.Expr], wanted: sp.Basic
 ) -> Call:
-    """A call with arguments of the search as they are, and others."""
-    own = {s: s for s in program.inputs if s in arguments} | dict(given)
-    pairs = tuple((s, own[s]) for s in program.inputs if s in own)
     flags = {IS_ROUNDING.name: IS_ROUNDING, FITS: IS_ROUNDING}
-    names = tuple(called(o.name, flags.get(o.name, ERROR)) for o in program.outputs)
-    return Call(program, pairs, names, wanted=wanted)
+    return call_with(program, arguments, given, lambda name: called(name, flags.get(name, ERROR)), wanted)
 
 
 def _is_at(stage: sp.Integer) -> sp.Basic:
@@ -324,7 +329,7 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
         _ASIDE: real("aside_now"),
         _BEFORE: Select(is_new, _FAR, ERROR),
         _LEFT: Select(is_new, sp.Integer(PASSES), _LEFT - step),
-        IS_NEWTON: sp.And(*map(sp.Not, (flag("is_near"), flag("mirrors"), IS_NEWTON)), sp.Gt(ERROR, _SLOW * _BEFORE)),
+        IS_NEWTON: sp.And(*map(sp.Not, (flag("is_near"), flag("mirrors"), IS_NEWTON)), sp.Gt(ERROR, SLOW * _BEFORE)),
         _MIRRORED: sp.And(sp.Not(flag("is_near")), sp.Or(flag("mirrors"), _MIRRORED)),
         _NEAREST: real("nearest_now"),
         _PASSES_LEFT: _PASSES_LEFT - 1,

@@ -17,16 +17,14 @@ from derive.ir.constants import BOUNDARY, CONVERGED, PASSES, STALLED
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program, Statement
-from derive.ir.symbols import ROTATION_ENTRIES, SCALE, count, flag, real
-from derive.kinematics.search.programs import ERROR, FITS, GOAL, IS_NEWTON, moved_to, posed
+from derive.ir.symbols import ROTATION_ENTRIES, SCALE, flag, real
+from derive.kinematics.search.programs import ERROR, FITS, GOAL, IS_NEWTON, SLOW, begun, call_with, moved_to, posed
 
 IS_NEAR = flag("is_near_reference")
 """Whether there is such a solution on the wanted branch."""
 NEAR = sp.Float("0.1")
 """It is no further than this from the reference (radians and lengths of the machine, all joints added)."""
-_SLOW = sp.Float("0.9")
-"""Where a damped step leaves more than this share of the error, one of Newton's method follows."""
-_BEFORE, _LEFT = real("error_before"), count("steps_left")
+_BEFORE = real("error_before")
 _FAR = sp.Integer(9)
 
 
@@ -41,36 +39,40 @@ def near_program(mechanism: Mechanism, step: Program, fits: Program, arguments: 
     """
     joints = mechanism.solved_joints
     here: dict[sp.Symbol, sp.Expr] = {j.symbol: near_name(j) for j in joints}
-    start = {near_name(j): _turn_of_tool() if j.free else _begun(j) for j in joints}
+    begins = [Let(begun(j.symbol), _value(j, reference_value(j))) for j in joints if not j.free]
+    start = {near_name(j): _turn_of_tool() if j.free else begun(j.symbol) for j in joints}
     following: dict[sp.Symbol, sp.Expr] = {near_name(j): moved_to(j.symbol) for j in joints}
-    newton_next = Let(flag("newton_next"), sp.And(sp.Not(IS_NEWTON), sp.Gt(ERROR, _SLOW * _BEFORE)))
-    following |= {_BEFORE: ERROR, _LEFT: _LEFT - 1, IS_NEWTON: newton_next.name}
-    ways = [sp.Abs(moved_to(j.symbol) - _begun(j)) / (1 if j.is_angle else SCALE) for j in joints if not j.free]
-    is_far, is_last = sp.Gt(sp.Add(*ways), NEAR), sp.Gt(2 * ERROR, _BEFORE)
+    newton_next = Let(flag("newton_next"), sp.And(sp.Not(IS_NEWTON), sp.Gt(ERROR, SLOW * _BEFORE)))
+    following |= {_BEFORE: ERROR, IS_NEWTON: newton_next.name}
+    ways = [sp.Abs(moved_to(j.symbol) - begun(j.symbol)) / (1 if j.is_angle else SCALE) for j in joints if not j.free]
+    way = Let(real("way_from_reference"), sp.Add(*ways))
+    is_far, is_last = sp.Gt(way.name, NEAR), sp.Gt(2 * ERROR, _BEFORE)
     is_met = sp.Or(sp.Le(ERROR, BOUNDARY / 100), sp.And(sp.Le(ERROR, CONVERGED), is_last))
     loop = Iterate(
         state=tuple(following),
-        start=(*start.values(), _FAR, sp.Integer(PASSES), sp.false),
-        step=(_call(step, arguments, {**here, IS_NEWTON: IS_NEWTON}), newton_next),
+        start=(*start.values(), _FAR, sp.false),
+        step=(_call(step, arguments, {**here, IS_NEWTON: IS_NEWTON}), newton_next, way),
         following=tuple(following.values()),
-        done=sp.Or(is_met, is_far, sp.Gt(ERROR, STALLED * _BEFORE), sp.Le(_LEFT, 0)),
+        done=sp.Or(is_met, is_far, sp.Gt(ERROR, STALLED * _BEFORE)),
         limit=PASSES + 1,
         otherwise=None,
         note="one step towards the pose",
     )
     meets = sp.And(sp.Le(ERROR, CONVERGED), sp.Not(is_far))
-    body: list[Statement] = [*(posed(mechanism, _begun) if any(j.free for j in joints) else ()), loop]
+    body: list[Statement] = [*begins]
+    if any(j.free for j in joints):
+        body += posed(mechanism, lambda joint: begun(joint.symbol))
+    body.append(loop)
     body += [_call(fits, arguments, here, meets), Let(IS_NEAR, flag(FITS))]
-    outputs = [Output(IS_NEAR.name, IS_NEAR), *(Output(near_name(j).name, _value(j)) for j in joints if not j.free)]
+    outputs = [
+        Output(IS_NEAR.name, IS_NEAR),
+        *(Output(near_name(j).name, _value(j, near_name(j))) for j in joints if not j.free),
+    ]
     return replace(normalise("meet_from_reference", body, outputs), summary="The joints next to the reference")
 
 
-def _begun(joint: Joint) -> sp.Expr:
-    return Wrap(reference_value(joint)) if joint.is_angle else reference_value(joint)
-
-
-def _value(joint: Joint) -> sp.Expr:
-    return Wrap(near_name(joint)) if joint.is_angle else near_name(joint)
+def _value(joint: Joint, value: sp.Expr) -> sp.Expr:
+    return Wrap(value) if joint.is_angle else value
 
 
 def _turn_of_tool() -> sp.Expr:
@@ -83,6 +85,4 @@ def _turn_of_tool() -> sp.Expr:
 def _call(
     program: Program, arguments: Sequence[sp.Symbol], given: Mapping[sp.Symbol, sp.Expr], wanted: sp.Basic = sp.true
 ) -> Call:
-    own = {s: s for s in program.inputs if s in arguments} | dict(given)
-    names = tuple(flag(FITS) if o.name == FITS else real(o.name) for o in program.outputs)
-    return Call(program, tuple((s, own[s]) for s in program.inputs if s in own), names, wanted=wanted)
+    return call_with(program, arguments, given, lambda name: flag(name) if name == FITS else real(name), wanted)
