@@ -36,7 +36,8 @@ from derive.kinematics.inverse import Inverse
 from derive.plate.legs import about_z
 from derive.plate.passive import at_the_pose
 from derive.plate.turning import forward_from_start
-from derive.solver.solve import Derivation, solve
+from derive.solver.derivation import Derivation
+from derive.solver.solve import solve
 from derive.work import counted
 
 

@@ -43,7 +43,8 @@ from derive.ir.symbols import HEADING, OFFSET, POSITION, ROTATION_ENTRIES, SCALE
 from derive.kinematics.search.guards import without_wrist
 from derive.lowering.passes import DERIVED, NOTHING, applied
 from derive.plate.passive import commanded, passive_statements, renamed_in
-from derive.solver.solve import Derivation, solve
+from derive.solver.derivation import Derivation
+from derive.solver.solve import solve
 from derive.work import counted
 
 

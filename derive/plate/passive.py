@@ -24,7 +24,8 @@ from derive.ir.program import Let, Output, Require, Statement, rewritten
 from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.legs import NORMAL, moments, names, rotation_axes, rotation_of
-from derive.solver.solve import Derivation, solve
+from derive.solver.derivation import Derivation
+from derive.solver.solve import solve
 from derive.solver.unsolved import Unsolved
 
 TWIST = real("twist")

@@ -26,9 +26,10 @@ from derive.kinematics.margins import Factor
 from derive.kinematics.search.derivations import Searched
 from derive.kinematics.solution import Solution
 from derive.plate.passive import mode_of, solve_passive
+from derive.solver.derivation import Derivation, Step
 from derive.solver.parallel_axes import Sum
 from derive.solver.positive_steps import known_signs
-from derive.solver.solve import RULES, TIERS, Derivation, Rule, Step
+from derive.solver.solve import RULES, TIERS, Rule
 from derive.solver.subproblems.affine_system import affine_triple
 from derive.solver.subproblems.one_equation.trigonometric import lateral
 

@@ -2,6 +2,7 @@
 
 It may import the folders from `ir` to `equations`.
 
+derivation: what it gives: statements, and the steps in which they were found
 derivation_record: the statements of a derivation: known legs and equal values under one name, every name bound once
 eliminations: equations with fewer unknowns, made from others, in tiers
 meeting_axes: the equation of a joint behind which two axes meet

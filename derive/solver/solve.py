@@ -6,14 +6,15 @@ It knows no mechanism: it asks every rule for candidates, takes the best, remove
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import sympy as sp
 
 from derive.equations.positions import positions, positions_and_distance, positions_from_flange
-from derive.equations.problem import Binding, Conditioning, Equation, Problem, StepDeterminant
+from derive.equations.problem import Binding, Equation, Problem
 from derive.equations.rotations import rotations
 from derive.ir.program import Statement
+from derive.solver.derivation import Derivation, Step
 from derive.solver.derivation_record import (
     DerivationRecord,
     left_alone,
@@ -47,6 +48,7 @@ from derive.solver.subproblems.pair import pair, scaled_pair
 from derive.solver.subproblems.polar import polar
 from derive.solver.subproblems.quadratic import quadratic
 from derive.solver.subproblems.spheres import spheres
+from derive.solver.subproblems.two_slides import of_turns, rotation_gives_turns, two_slides
 from derive.solver.unsolved import Exhausted, Undetermined, Unsolved, undetermined, unsolved
 from derive.work import TooMuchWork, at_most, spend
 
@@ -94,42 +96,6 @@ MOST_TERMS = 100_000
 """The work of one derivation, in terms (`derive.work`): some seconds."""
 
 
-@dataclass(frozen=True)
-class Step:
-    """One step: the problem before it, the binding that a rule found, and this binding with its recorded names."""
-
-    problem: Problem
-    found: Binding
-    recorded: Binding
-    span: tuple[int, int] = (0, 0)
-    """Where the statements of the step begin and end among those of the derivation that are `plain`."""
-    names: tuple[tuple[sp.Symbol, sp.Symbol], ...] = ()
-    """The names in `found` that have another name in `recorded`, each with the other name."""
-
-
-@dataclass(frozen=True)
-class Derivation:
-    """The solution as statements, with the determinants of its two-root steps, and the conditioning of every step
-    whose angle may be free.
-    """
-
-    statements: tuple[Statement, ...]
-    determinants: tuple[StepDeterminant, ...]
-    conditionings: tuple[Conditioning, ...]
-    rules: tuple[str, ...]
-    sums: tuple[Sum, ...] = ()
-    residuals: tuple[sp.Expr, ...] = ()
-    """With an equation too many: the expressions that vanish if the equations agree with each other."""
-    wrist: tuple[sp.Symbol, ...] = ()
-    """With an equation too many in the positions: the joints behind them, which take any rotation."""
-    conditions: tuple[sp.Expr, ...] = ()
-    """Values of parameters that must not vanish."""
-    plain: tuple[Statement, ...] = ()
-    """The statements of the steps alone: a mechanism may put others in front."""
-    steps: tuple[Step, ...] = ()
-    """The steps in their order, for a reader."""
-
-
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
     """Solve a problem.
 
@@ -140,7 +106,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     """
     try:
         with at_most(MOST_TERMS):
-            return _solved(problem, arguments, resolve_angle)
+            turned = _turns_first(problem, arguments, resolve_angle) if rotation_gives_turns(problem) else None
+            return turned or _solved(problem, arguments, resolve_angle)
     except TooMuchWork as much:
         raise Exhausted(f"{unsolved(problem)}\n    (given up after {much.most:.0f} terms)") from None
 
@@ -196,6 +163,24 @@ def _solved(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resol
         with_known_signs(record.statements, signs),
         tuple(steps),
     )
+
+
+def _turns_first(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation | None:
+    """A trial whose turns the rotation gives; then the positions give two slides, and leave one equation."""
+    try:
+        found = _solved(of_turns(problem), arguments, resolve_angle)
+    except Unsolved:
+        return None
+    known = replace(problem, angles=(), turns=(), is_overdetermined=False)
+    binding = next(two_slides(known, problem.equations), None)
+    if binding is None or binding.residual is None:
+        return None
+    plain = (*found.plain, *binding.statements)
+    step = Step(known, binding, binding, (len(found.plain), len(plain)))
+    return replace(
+        found, statements=(*found.statements, *binding.statements), plain=plain, residuals=(binding.residual,),
+        rules=(*found.rules, binding.rule), steps=(*found.steps, step),
+    )  # fmt: skip
 
 
 def _read_plainly(problem: Problem, unknowns: Sequence[sp.Symbol]) -> list[sp.Symbol]:

@@ -65,6 +65,16 @@ def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
     return np.asarray(np.linalg.norm((np.linalg.pinv(scaled) @ closure.residual(*state))[:, :, 0], axis=1))
 
 
+def how_far(kin: Kinematics, samples: Samples, joints: Array) -> Array:
+    """How many reaches the farthest slide of a solution is out, at least one: as many times more it is rounded.
+
+    Two slides that are nearly parallel meet a pose far away.
+    """
+    slides = [k for k, j in enumerate(kin.mechanism.joints) if not j.is_angle]
+    out = np.abs(joints[:, slides, ...]).reshape(len(joints), -1) / samples.reach[:, None]
+    return np.asarray(np.maximum(1.0, np.max(out, axis=1, initial=0.0)))
+
+
 def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Array) -> Array:
     """The distance by which the pose, and in a loop the joints, would have to move to close Φ: |[A B]⁺ Φ|.
 

@@ -14,7 +14,7 @@ from derive.ir.interpret import Array, run
 from derive.ir.program import Program, Status
 from derive.ir.symbols import COORDINATE_NAMES, branch_sign
 from derive.kinematics.kinematics import Kinematics
-from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, least_move, worst
+from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, how_far, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home
@@ -55,7 +55,8 @@ def check_inverse(kin: Kinematics, closure: Closure, samples: Samples, slots: Sl
         part = samples.take(chosen)
         joints = closure.joints(axes[slot, chosen], part.parameters)[:, :, 0]
         errors = least_move(kin, closure, part, joints)
-        residual = max(residual, worst(kin, "inverse kinematics", errors, part, CLOSURE_TOLERANCE))
+        far = how_far(kin, part, joints)
+        residual = max(residual, worst(kin, "inverse kinematics", errors / far, part, CLOSURE_TOLERANCE))
         indicators = closure.indicators(joints, part.pose, part.parameters)[:, :, 0]
         if (indicators * signs <= 0).any():
             place = describe(kin, part, int(np.argmax(np.any(indicators * signs <= 0, axis=1))))

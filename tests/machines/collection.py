@@ -248,6 +248,7 @@ MACHINES: Mapping[str, Mechanism] = {
 SOLUTIONS: Mapping[str, int] = {
     **{name: 2 ** len(m.branches) for name, m in MACHINES.items()},
     **dict.fromkeys(POINTING, 8),
+    "three turns between two slides, with an inclined tool": 6,
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),
     **{name: count for count, names in UNNAMED.items() for name in names},
 }
@@ -255,7 +256,7 @@ SOLUTIONS: Mapping[str, int] = {
 starts finds them.
 """
 COSTLY = (
-    "a tool beside", "a tool inclined",
+    "a tool beside", "an inclined tool",
     "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",
     "arm with three parallel axes", "across its last axis", "by a table with angles", "by a table, the last held",
     "head points, beside its axis", "may lie on its second axis", "seven axes beside each other",

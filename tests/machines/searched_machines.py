@@ -13,6 +13,7 @@ from derive.mechanism import (
     branch,
     distance,
     length,
+    linear,
     radians,
     rotary,
 )
@@ -55,6 +56,8 @@ POINTS = {
 """Arms that turn a point: with a shift of zero a branch may meet the next one where two solutions of it meet."""
 
 _FLANGE = Tz(-FLANGE)
+_TRACK, _QUILL = linear("E1", "track"), linear("E2", "quill")
+_LEANING = Tz(_QUILL) * Tx(_B4) * Ry(radians(LEAN))
 
 
 def _pointing(name: str, chain: Chain) -> Mechanism:
@@ -69,8 +72,11 @@ POINTING = {
         "PointingParallel", Ry(A4) * Tx(_B2) * Rx(A5) * Ty(_B3)
     ),
     "five axes with a tool beside the last one": _pointing("Pointing", Rx(A4) * Ry(A5) * Tx(_B2)),
-    "five axes with a tool inclined to the last one": _pointing(
-        "PointingInclined", Rx(A4) * Ty(_B3) * Rz(A5) * Tx(_B2) * Ry(radians(LEAN))
+    "three turns between two slides, with an inclined tool": textbook(
+        (_TRACK, _QUILL, A1, A2, A3, *_BESIDE, FLANGE, LEAN),
+        "PointingSlides",
+        Tx(_TRACK) * Rz(A1) * Ty(_B1) * Ry(A2) * Tx(_B2) * Rx(A3) * Ty(_B3) * _LEANING * _FLANGE,
+        Task("xyz", Turning.DIRECTION),
     ),
 }
 """With the turn of the tool about its line as a sixth joint these are arms that are searched."""

@@ -18,7 +18,7 @@ from derive.kinematics.search.derivations import solve_both
 from derive.kinematics.solution import prepared
 from derive.plate.passive import solve_passive
 from derive.report.derived import equations_of
-from derive.solver.solve import Step
+from derive.solver.derivation import Step
 from tests.mechanisms import kinematics_of, named
 from tests.page.made import NAMES, page, samples, spelled, spelling, tree
 from tests.page.reading import every, has_class, maths, parsed, residuals, run, section, value_of

@@ -160,10 +160,13 @@ def _turns_tool(trial: Inverse) -> bool:
 
 def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
     """Whether, with one joint known, the equations of the positions hold no more unknown joints than there are
-    equations; one more of three parallel joints, since the rotation tells their sum.
+    equations; one more of three parallel joints, since the rotation tells their sum. Or whether the rotation gives all
+    turns, and two slides are left.
     """
     closure = closure_at(mechanism, known)
     unknown = [j.symbol for j in mechanism.solved_joints if j != known]
+    if sum(not j.is_angle for j in mechanism.solved_joints) == 2 == len(unknown) - 3 and len(closure.turns) > 3:
+        return True
     read = [names_in(e.expression) for e in closure.equations]
     present = [u for u in unknown if any(names & {u, cosine(u), sine(u)} for names in read)]
     are_parallel = any(len(turn.amount.free_symbols & set(unknown)) > 2 for turn in closure.turns)

@@ -14,7 +14,7 @@ from derive.equations.problem import StepDeterminant
 from derive.ir.constants import BOUNDARY
 from derive.ir.primitives import Select
 from derive.ir.program import Require, Statement
-from derive.solver.solve import Derivation
+from derive.solver.derivation import Derivation
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from functools import reduce
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from derive.ir.interpret import Array, evaluate
 from derive.ir.passes import needed_lets
@@ -30,6 +31,8 @@ Value = dict[Roots, sp.Expr]
 _PLAIN: Roots = frozenset()
 _MOST_ROOTS = 8
 _NOTHING = 1e-10
+_EQUAL = 1e-6
+"""Two forms of a value differ by no more than this share of it, or of one: by the digits that the worse one loses."""
 
 
 @dataclass(frozen=True)
@@ -109,15 +112,28 @@ class _Algebra:
         return self._named(f"product_{len(self.lets)}", self._kept(difference))
 
     def _chosen(self, value: sp.Expr) -> sp.Expr:
-        """A value where nothing is singular: that of the side that all samples take at which every root is real."""
+        """A value where nothing is singular: that of the side that all samples take at which every root is real. Where
+        two sides are the same value in two forms, of which one keeps more digits, it is the form for all poses.
+        """
         while isinstance(value, Select):
-            said = np.asarray(evaluate(value.args[0], {name: np.real(v) for name, v in self.numbers.items()}))
-            holds = np.broadcast_to(said, np.broadcast_shapes(said.shape, self.within.shape))
-            holds = holds[np.broadcast_to(self.within, holds.shape)]
-            if not (holds.all() or not holds.any()):
+            numbers = {name: np.real(v) for name, v in self.numbers.items()}
+            said = np.asarray(evaluate(value.args[0], numbers), dtype=bool)
+            if self._all_within(said):
+                value = value.args[1]
+            elif self._all_within(~said) or self._all_within(~said | self._is_same(*value.args[1:])):
+                value = value.args[2]
+            else:
                 raise Unsolved(f"{value} has a choice")
-            value = value.args[1] if holds.all() else value.args[2]
         return value
+
+    def _all_within(self, holds: NDArray[np.bool_]) -> bool:
+        """Whether a condition holds at all samples at which every root is real."""
+        shape = np.broadcast_shapes(holds.shape, self.within.shape)
+        return bool(np.broadcast_to(holds, shape)[np.broadcast_to(self.within, shape)].all())
+
+    def _is_same(self, first: sp.Expr, second: sp.Expr) -> NDArray[np.bool_]:
+        """At which samples two expressions are equal."""
+        return np.asarray(np.isclose(self._number(first), self._number(second), rtol=_EQUAL, atol=_EQUAL))
 
     def _bind(self, name: sp.Symbol, value: sp.Expr) -> sp.Symbol:
         self.lets.append(Let(name, value))

@@ -13,7 +13,7 @@ import pytest
 import sympy as sp
 
 from derive.description.amounts import with_exact_angles
-from derive.description.mechanism import DescriptionError, Mechanism, linear
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, linear
 from derive.description.validate import validate
 from derive.form.machine import in_form
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz
@@ -25,7 +25,7 @@ from derive.solver.unsolved import Unsolved
 from derive.witness import witness
 from tests.machines.collection import MACHINES as COLLECTION
 from tests.mechanisms import catalogue
-from tests.unit.form.chains import A2, A3, A4, AIMED, CHAINS
+from tests.unit.form.chains import A2, A3, A4, CHAINS
 from tests.unit.form.link_frames import by_table, in_link_frames
 from tests.unit.form.rewording import reworded
 from tests.unit.form.test_chain import frame, in_words
@@ -73,12 +73,13 @@ def test_what_is_derived_of_another_wording_solves_the_machine(name: str) -> Non
     assert operations(again) == operations(own)
 
 
+ROLLED = Task("xyz", Turning.PITCH_ROLL)
 _TRACK, _QUILL = linear("A1", "track"), linear("A5", "quill")
 _BETWEEN = Tx(_TRACK) * Rz(A2) * Ty(50) * Ry(A3) * Tx(70) * Rx(A4) * Ty(80) * Tz(_QUILL) * Tx(30) * Ry(1)
 REFUSED = {
     "a flange that leans": replace(CHAINS["SCARA"], chain=CHAINS["SCARA"].chain * Rx(sp.pi / 2)),
     "three turns between two slides": replace(
-        CHAINS["five turns"], task=AIMED, joints=(_TRACK, A2, A3, A4, _QUILL), chain=_BETWEEN
+        CHAINS["five turns"], task=ROLLED, joints=(_TRACK, A2, A3, A4, _QUILL), chain=_BETWEEN
     ),
     "a joint too many": replace(CHAINS["arm on a rail"], held=()),
 }

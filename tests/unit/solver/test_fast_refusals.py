@@ -63,7 +63,7 @@ REFUSED = {
         arm(
             Tx(TRACK) * _WRIST_BETWEEN_SLIDES * Tz(QUILL) * Tx(L[3]) * Ry(1),
             (TRACK, A1, A2, A3, QUILL),
-            Turning.DIRECTION,
+            Turning.PITCH_ROLL,
         ),
         _NO_POINT,
     ),

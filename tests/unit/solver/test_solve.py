@@ -20,8 +20,9 @@ from derive.ir.primitives import Atan2, Wrap
 from derive.ir.program import Let, Output, Status
 from derive.ir.symbols import cosine, real, sine
 from derive.ir.verify import BrokenProgram
+from derive.solver.derivation import Derivation
 from derive.solver.derivation_record import DerivationRecord
-from derive.solver.solve import Derivation, solve
+from derive.solver.solve import solve
 from derive.solver.unsolved import Unsolved
 from tests.unit.solver.execution import at, distance, problem, reference
 
