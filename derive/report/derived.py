@@ -32,6 +32,7 @@ from derive.solver.positive_steps import known_signs
 from derive.solver.solve import RULES, TIERS, Rule
 from derive.solver.subproblems.affine_system import affine_triple
 from derive.solver.subproblems.one_equation.trigonometric import lateral
+from derive.solver.subproblems.two_slides import two_slides
 
 _WORTH_A_NAME = 3
 """The least number of operations of a value that stands under its name in an equation of many operations."""
@@ -50,6 +51,7 @@ FORMS = {
     "trigonometric": "a cos u + b sin u = c, the law of cosines: two solutions",
     "lateral": "a cos u + b sin u = c for a point beside the axis: two solutions",
     "quadratic": "a square: two solutions",
+    "two slides": "three equations, linear in both unknowns; what is left across both is zero at a solution",
     "spheres": "circles or spheres about known points: two solutions",
     "sum": "the sum of parallel angles, less those that are known",
 }
@@ -280,7 +282,7 @@ def _again(step: Step, problem: Problem, equations: tuple[Equation, ...]) -> Ite
 
 def _rules(step: Step) -> tuple[Rule, ...]:
     """The rules that may have found the step, those with its name first."""
-    every = (*RULES, lateral, affine_triple)
+    every = (*RULES, lateral, affine_triple, two_slides)
     return tuple(sorted(every, key=lambda rule: rule.__name__ != step.found.rule.replace(" ", "_")))
 
 
