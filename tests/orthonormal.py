@@ -12,10 +12,10 @@ ALLOWED, REFUSED = 0.9e-4, 1.1e-4
 """Errors on both sides of what is a rotation."""
 
 
-def rodrigues(axis: ArrayLike, angle: float) -> Array:
-    """The rotation about a unit vector by an angle in radians."""
-    cross = np.cross(np.eye(3), axis)
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
+def rodrigues(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """The rotation about a unit vector by an angle in radians; of rows of vectors or angles one each."""
+    cross, angles = np.cross(np.eye(3), np.asarray(axis)[..., None, :]), np.asarray(angle)[..., None, None]
+    return np.asarray(np.eye(3) + np.sin(angles) * cross + (1.0 - np.cos(angles)) * (cross @ cross))
 
 
 def about(axis: int, degrees: float) -> Array:
