@@ -91,9 +91,7 @@ class Machine:
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.parametrize("name", NAMES)
 def test_positions_and_rates(name: str) -> None:
-    """Of recorded poses: the position is that of Python, the inverse finds the axes again near them, and both
-    derivatives are those of the positions along a small step; what Python refuses is refused with its status.
-    """
+    """Of recorded poses: positions, axes and both derivatives; what Python refuses is refused with its status."""
     machine = Machine(name)
     count = len(machine.mechanism.joints)
     rng = np.random.default_rng(3)
@@ -142,9 +140,7 @@ def test_positions_and_rates(name: str) -> None:
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.parametrize("name", NAMES)
 def test_wire_frame(name: str) -> None:
-    """At recorded poses at most sixteen edges, one of which ends at the tool where there is room for all; those of a
-    chain follow each other from the base; what has no pose is refused.
-    """
+    """At recorded poses at most sixteen edges, which follow each other from the base to the tool."""
     machine, compared = Machine(name), 0
     for axes in recorded(name)[:16]:
         count, edges = machine.wire_frame(axes)

@@ -297,9 +297,7 @@ def formulas_of(mechanism: Mechanism) -> Formulas:
 
 
 def derivative(function: Callable[..., Array], at: Array, *fixed: Array) -> Array:
-    """∂ outputs / ∂ inputs of every row, by complex steps in one call: of a function of the inputs, and of further
-    values by row.
-    """
+    """∂ outputs / ∂ inputs of every row, by complex steps in one call; further: values by row."""
     count, width = at.shape
     shifted = np.tile(at.astype(complex), (width, 1, 1))
     for i in range(width):

@@ -1,5 +1,4 @@
-"""What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace
-ends."""
+"""What a singular pose allows: a self-motion that changes nothing, or a fold where the workspace ends."""
 
 import numpy as np
 
@@ -14,10 +13,7 @@ SECOND_ORDER = 1e-3
 
 
 def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
-    """The joint motion that changes nothing to first order, and the twist that no joint motion makes; of every row.
-
-    Lengths are per reach; of the joint motion the largest entry is 1, of the twist the size.
-    """
+    """The joint motion that changes nothing to first order, and the twist that no joint motion makes; per reach."""
     jacobian = machine.closure.jacobian(axes, machine.closure.poses(axes)[0])
     rows = np.ones(jacobian.shape[1])
     rows[: len(machine.closure.task)] = 1 / machine.reach
@@ -28,9 +24,7 @@ def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
 
 
 def is_free(machine: Machine, axes: Array) -> Array:
-    """Which rows of singular axis values have another posture rather far away, along the motion
-    that changes nothing.
-    """
+    """Which rows have another posture rather far away, along the motion that changes nothing."""
     motion, _ = null_vectors(machine, axes)
     joints, frames = machine.closure.joints(axes), machine.closure.poses(axes)
     found = np.zeros(len(axes), dtype=bool)

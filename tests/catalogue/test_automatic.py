@@ -117,9 +117,7 @@ def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
 
 
 def _check_chosen(machine: Machine, frames: tuple[Array, ...], asked: list[tuple[Array, Array, Array]]) -> None:
-    """What an open configuration answers for frames by their rows, with references, is what is expected: all of it
-    asked as one batch, and every twentieth row of each by a single call.
-    """
+    """An open configuration answers for frames by their rows as expected: as one batch, some by single calls."""
     robot = machine.changed(check_limits=False)
     opened = (0,) * len(robot.CONFIGURATION)
     rows, references, expected = (np.concatenate(part) for part in zip(*asked, strict=True))

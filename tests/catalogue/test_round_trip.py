@@ -125,9 +125,7 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
 @pytest.mark.slow("Hexaglide", "ThreeParallel")
 @pytest.mark.long("Pos_RRR")
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
-    """Positions from the middle of the machine to twice its reach, or turns up to 2.2 radians where none is commanded:
-    two branches of a serial one answer together, or none.
-    """
+    """From the middle to twice the reach, or turns: two branches of a serial machine answer together, or none."""
     counts = set()
     for machine in machines[::2]:
         axes = machine.draw(3, np.random.default_rng(32))

@@ -170,9 +170,7 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
 
 @pytest.mark.long("Pos_RRR")
 def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[Machine, ...]) -> None:
-    """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing
-    moves.
-    """
+    """At a self-motion some axis stays at its reference, or as near as the rest can be reached; else nothing moves."""
     free = 0
     for machine in machines[:5:2]:
         if not machine.is_spatial or machine.robot.BRANCHES == 0:

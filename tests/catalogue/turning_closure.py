@@ -154,9 +154,7 @@ class TurningClosure(Closure):
         return _about(2, np.arctan2(across, along))
 
     def _twisted(self, rotations: Array) -> Array:
-        """The rotations turned about the tool until the plane of a platform that only turns holds: a cos u + b sin u +
-        c = 0. Of its two roots the machine has the one where the plane's slope has the sign of that at home.
-        """
+        """The rotations turned about the tool until the plane holds, its slope with the sign at home."""
         if not self._fixed:
             return rotations
         assert not self.task and len(self._fixed) == 1

@@ -1,8 +1,4 @@
-"""Questions and what the package answers, as plain data: a question is a dictionary, and so is an answer.
-
-A call that raises answers with its status and its message, in which numbers are hidden: they are compared where they
-are axes.
-"""
+"""Questions and what the package answers, as plain data; of a refusal the status, and the message without numbers."""
 
 import re
 from collections.abc import Callable, Iterable

@@ -46,9 +46,7 @@ def robot(recipe: Recipe) -> Robot:
 
 
 def recipes(name: str) -> Iterator[Recipe]:
-    """The machines of a mechanism (or of a coupling): as it is drawn, special ones, an unequal one with offsets, in
-    metres.
-    """
+    """The machines of a mechanism: as it is drawn, special ones, an unequal one with offsets, in metres."""
     if name in COUPLED:
         yield [{"name": part, "parameters": dict(given)} for part, given in COUPLED[name]]
         return

@@ -30,9 +30,7 @@ Call = list[Any]
 
 
 def calls_of(question: Answer, rows: int) -> list[Call]:
-    """The calls that a question of the corpus asks for; none where it asks for what JavaScript has not. rows: of the
-    Jacobian.
-    """
+    """The calls that a question of the corpus asks for; none for what JavaScript has not. rows: of the Jacobian."""
     if question["call"] == "forward":
         start = [_frame(question["start"])] if "start" in question else []
         axes = question["axes"]

@@ -1,5 +1,4 @@
-"""Rates of joints by rates of the pose: by perturbed joints, and by differences of the inverse, neither of which is the
-formula."""
+"""Rates of joints by rates of the pose: by perturbed joints, and by differences of the inverse."""
 
 from __future__ import annotations
 

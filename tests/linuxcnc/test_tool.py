@@ -85,9 +85,7 @@ def _frame(module: Module, which: str, joints: list[float]) -> Array | None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_frames(name: str) -> None:
-    """The tool seen from the work is the frame of Python, or that turned about x by half a turn where z leads away from
-    the holder; without a table the work stays.
-    """
+    """The frame of Python, or that turned half a turn about x where z leads away from the holder; the work's too."""
     machine, count = machine_of(name), 0
     kin = kinematics_of(named(name))
     for axes, frame, _ in islice(answered(machine), 12):
@@ -115,9 +113,7 @@ def test_frames(name: str) -> None:
     ],
 )
 def test_five_axes(name: str, tool: Array, work: Array) -> None:
-    """What turns the tool turns its frame, what turns the work turns that of the work; with axes that are counted from
-    elsewhere, too.
-    """
+    """What turns the tool turns its frame, what turns the work that of the work; with counts from elsewhere, too."""
     machine = machine_of(name)
     letters = [joint.name for joint in named(name).joints]
     machine.module.set(**{f"offset_{letter.lower()}": 7.0 for letter in letters[3:]})

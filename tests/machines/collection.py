@@ -251,9 +251,7 @@ SOLUTIONS: Mapping[str, int] = {
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),
     **{name: count for count, names in UNNAMED.items() for name in names},
 }
-"""The largest number of solutions: two a branch that a description states, else as a search of the closure from many
-starts finds them.
-"""
+"""The most solutions: two a branch that is stated, else as a search from many starts finds them."""
 COSTLY = (
     "a tool beside", "a tool inclined",
     "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",

@@ -77,10 +77,7 @@ def asked_in(language: str, mechanism: Mechanism, asked: Sequence[Mapping[str, A
 
 
 def confirm_natural_names(name: str, forward: Forward, words: Mapping[str, str]) -> None:
-    """A machine whose inputs are called as no variable can be moves as its twin with plain names.
-
-    words: what the language calls an input otherwise than Python, by the name in the description.
-    """
+    """A machine with odd names moves as its twin. words: of the language, by the name in the description."""
     axes = [[10.0 * k, 20.0 - 7.0 * k, 5.0 + 3.0 * k, 4.0 * k] for k in range(6)]
     (names, odd), (_, twin) = (forward(validate(m), axes) for m in (ODD[name].mechanism(), ODD[name].twin()))
     assert [answer["status"] for answer in odd] == [answer["status"] for answer in twin]

@@ -123,9 +123,7 @@ def test_the_witness_counts_the_solutions(name: str) -> None:
 
 @EVERY
 def test_every_solution_closes_at_what_is_commanded(name: str) -> None:
-    """Forward kinematics from near the command finds the pose of a solution: there every equation of the description
-    holds, and what is commanded is met; what is not commanded is as the planes leave it.
-    """
+    """Forward from near the command: every equation holds there, and what is commanded is met."""
     one, answered, most = guided(name), 0, 0
     task = one.mechanism.task
     for frame in commands(one, 16):
@@ -277,9 +275,7 @@ def test_batches_are_the_same(name: str) -> None:
 
 @pytest.mark.parametrize("name", TILTING)
 def test_singular_poses_are_answered_or_refused(name: str) -> None:
-    """Level, tilted by quarter turns, and upside down, where the planes leave the twist open: both languages agree, and
-    what is answered closes.
-    """
+    """Level, tilted by quarter turns, and upside down: both languages agree, and what is answered closes."""
     one, reached = guided(name), 0
     position, zeros = home_of(one)[0], [0.0] * len(one.mechanism.joints)
     for about in (0, 1):

@@ -85,9 +85,7 @@ def test_no_pose_is_refused(name: str, zeros: float) -> None:
 @EVERY
 @pytest.mark.parametrize("decade", [-1, -2, -3, -4, -5])
 def test_both_of_two_near_solutions_are_listed(name: str, decade: int) -> None:
-    """The planted one is among all solutions, and not only the other one; at 1e-5 degrees they are one: what stands
-    between them meets the pose to 1e-12 of its size.
-    """
+    """The planted one is listed, and not only the other one; what stands between two that are one meets the pose."""
     rng, robot = np.random.default_rng(13), made(name).robot
     robot = type(robot)(**{p.name: p.nominal for p in made(name).mechanism.parameters})
     for fold in folds(robot, 12, rng):

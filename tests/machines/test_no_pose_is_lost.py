@@ -103,9 +103,7 @@ def test_the_block_meets_the_pose_of_an_arm_nearly_stretched() -> None:
 @pytest.mark.parametrize("name", STRETCHED[:1])
 @pytest.mark.parametrize("bend", [0.0, 1e-9, 1e-7, 1e-6, 1e-5, 1e-3])
 def test_an_arm_nearly_stretched_keeps_its_rotation(name: str, bend: float) -> None:
-    """Two folds at once: the arm's part across A1 may round to nothing while the wrist is off A1. Then A1 is free, and
-    the commanded rotation is met all the same; the position within the root of the rounding.
-    """
+    """Two folds at once: A1 may be free, and the rotation is met all the same, the position to a root of rounding."""
     machine = made(name)
     joints = np.random.default_rng(3).uniform(-120.0, 120.0, (300, len(machine.mechanism.joints)))
     joints[:, place_of(machine, "A3")] = bend

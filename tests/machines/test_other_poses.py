@@ -1,6 +1,4 @@
-"""Axes have several poses: calls answer for the pose that is given, and the inverse never accepts one that a controller
-would not find again.
-"""
+"""Axes have several poses: calls answer for the given one; the inverse accepts none that is not found again."""
 
 import re
 import sys
@@ -137,9 +135,7 @@ def test_of_what_only_turns_every_pose_is_found_again(name: str) -> None:
 
 
 def test_a_rod_at_its_fold_is_kept() -> None:
-    """Where a rod stands square to its rail, two carriages meet: rounding decides on which side forward kinematics
-    finds it, and the inverse must not refuse that.
-    """
+    """Where a rod stands square to its rail, two carriages meet: the inverse must not refuse that."""
     robot = platform("Softkin_Hexaglide").robot
     given = robot.parameters
     away = [given[f"platform_{k}_y"] - given[f"rail_{k}_y"] for k in range(1, 7)]

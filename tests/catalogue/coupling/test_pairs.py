@@ -106,9 +106,7 @@ def _is_found_again(robot: softkin.Mechanism, axes: tuple[float, ...] | None, fl
 def _meets_the_rotation(
     coupled: softkin.Coupled, second: Part, axes: tuple[float, ...], found: np.ndarray, commanded: np.ndarray
 ) -> None:
-    """All of it, or the direction of the tool; on another branch of an arm, whose flange then points elsewhere, the
-    nearest.
-    """
+    """All of it, or the direction of the tool; on another branch, whose flange points elsewhere, the nearest."""
     count = len(second.robot.AXES)
     if second.mechanism.task.turning is Turning.DIRECTION:
         assert np.abs(found[:, 2] - commanded[:, 2]).max() < 1e-11
@@ -132,9 +130,7 @@ def _what_cannot_be_had(
     values: list[float],
     rng: np.random.Generator,
 ) -> None:
-    """A rotation that the tool can be swung to from a reachable one, or that differs in what is
-    passive: the same axes.
-    """
+    """A rotation that the tool can be swung to, or that differs in what is passive: the same axes."""
     if second.mechanism.task.turning is Turning.FULL:
         return
     if second.mechanism.task.turning is Turning.ABOUT_Z:

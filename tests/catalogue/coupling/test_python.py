@@ -129,9 +129,7 @@ def test_limits_are_those_of_the_parts() -> None:
 @pytest.mark.parametrize("garbage", (math.nan, math.inf, -math.inf, 1e300, 1.1e9))
 @pytest.mark.parametrize("carrier", (softkin.Gantry3(), softkin.PosRRR(**ARM)), ids=("gantry", "arm"))
 def test_garbage(carrier: softkin.Mechanism, garbage: float) -> None:
-    """A refusal whatever the number is and wherever it stands, alone and in a batch; what is not needed is not looked
-    at.
-    """
+    """A refusal wherever the number stands, alone and in a batch; what is not needed is not looked at."""
     robot = softkin.Coupled(carrier, softkin.Wrist3(tool_offset_z=75.0))
     axes = [5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
     frame, configuration = robot.forward(axes)
@@ -228,9 +226,7 @@ def frame_of(robot: softkin.Mechanism, *axes: float) -> tuple[np.ndarray, np.nda
 
 @pytest.mark.parametrize(("side", "height"), [(1, 90.0), (-1, -90.0)])
 def test_the_inclination_moves_the_tool_to_x(side: int, height: float) -> None:
-    """Library 4.16 and later: the tool points along +Z; 4.12: along -Z. Both say that a positive
-    angle moves it to +X.
-    """
+    """Library 4.16 and later: the tool points along +Z; 4.12: along -Z. A positive angle moves both to +X."""
     for robot, zeros in (
         (softkin.Kin5Axes(tool_length=90.0, tool_side=side), (0.0, 0.0, 0.0)),
         (softkin.Coupled(softkin.Gantry3(), softkin.Wrist2(tool_length=90.0, tool_side=side)), (0.0, 0.0, 0.0)),
@@ -250,9 +246,7 @@ def test_the_roll_axis_offset_is_seen_behind_the_yaw() -> None:
 
 
 def test_a_wrist_with_three_axes() -> None:
-    """Its middle axis turns about the negative Y: hand down is a positive angle, and the angles
-    follow in closed form.
-    """
+    """Its middle axis turns about the negative Y: hand down is positive, and the angles have closed forms."""
     robot = softkin.Wrist3(tool_offset_z=75.0)
     assert frame_of(robot, 0.0, 90.0, 0.0)[0] == pytest.approx((-75.0, 0.0, 0.0), abs=1e-12)
     assert frame_of(robot, 0.0, 0.0, 0.0)[0] == pytest.approx((0.0, 0.0, 75.0), abs=1e-12)

@@ -75,9 +75,7 @@ def test_a_start_is_where_the_search_starts(machine: Machine) -> None:
 
 
 def test_the_answer_is_in_the_mode_of_the_machine_wherever_the_search_starts() -> None:
-    """A flat platform below its base has the lengths of the one above: from there the search ends there, and is
-    refused.
-    """
+    """A flat platform below its base has the lengths of the one above: a search that ends there is refused."""
     machine = machines()["nominal"]
     mirror = np.diag((1.0, 1.0, -1.0))
     turn = machine.poses(1)[1][0]
@@ -195,9 +193,7 @@ def test_the_catalogue_knows_it() -> None:
 
 
 def test_a_start_is_repaired_too(machine: Machine) -> None:
-    """Forward kinematics from a start in single precision ends where it ends from an exact one; a wrong start is
-    refused.
-    """
+    """A start in single precision ends where an exact one does; a wrong start is refused."""
     positions, turns = machine.poses(2, 5.0)
     axes = machine.axes(positions[0], turns[0])
     for matrix in list(slightly_off(turns[0]))[:3]:

@@ -80,9 +80,7 @@ def _between(first: Array, second: Array) -> Array:
 
 @pytest.mark.parametrize("side", ["base", "platform"])
 def test_the_cone_of_every_joint_bounds_the_inverse(machine: Machine, side: str) -> None:
-    """A pose is refused where one joint leans further than its cone, and the cone of the other side
-    has no part in it.
-    """
+    """A pose is refused where one joint leans further than its cone; the cone of the other side has no part in it."""
     positions, turns = machine.poses(300)
     lean = leans(machine, positions, turns)[side == "platform"].max(axis=1)
     width = float(np.median(lean))

@@ -42,9 +42,7 @@ def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
 
 @pytest.mark.long
 def test_the_number_of_passes_is_noticed() -> None:
-    """Three passes are too few, and so are five where the rate of a turn is taken for the rates of
-    roll, pitch and yaw.
-    """
+    """Three passes are too few, and so are five where the rate of a turn is taken for those of roll, pitch and yaw."""
 
     def without_matrix(s: Statement) -> Statement:
         return (
@@ -104,9 +102,7 @@ def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
 
 @pytest.mark.parametrize("pitch", [90.0, -90.0, 89.999])
 def test_where_roll_pitch_and_yaw_are_singular(machine: Machine, pitch: float) -> None:
-    """A quarter turn of pitch away from the start: where the machine can hold that, it is found or refused, never
-    mistaken.
-    """
+    """A quarter turn of pitch away from the start: a pose is found or refused, never mistaken."""
     side = machine.side(machine.home[:3], machine.home_turn)
     turns = np.array(
         [rotation(0.0, pitch, 0.0) @ rotation(0.0, 0.0, yaw) @ machine.home_turn for yaw in (0.0, 10.0, 20.0, 30.0)]

@@ -1,5 +1,4 @@
-"""Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something
-ends."""
+"""Machines at the end of what can be assembled: their dimensions, and axis values where something ends."""
 
 from collections.abc import Mapping
 from math import cos, radians, sin, sqrt
@@ -180,5 +179,4 @@ PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]
         ),
     ),
 }
-"""Places that one leg after the other cannot aim at: its joint on the plate is on the axis of its drive, or too far
-away."""
+"""Places that one leg cannot aim at: its joint on the plate is on the axis of its drive, or too far away."""

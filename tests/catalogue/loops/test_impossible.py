@@ -168,9 +168,7 @@ def do_meet(centres: Array, radii: Array) -> NDArray[np.bool_]:
 
 
 def test_discs_that_meet() -> None:
-    """Against the smallest largest excess over a fine grid of points, on random discs of all sizes, and on discs of
-    which every two meet around a gap.
-    """
+    """Against the least excess over a grid of points: random discs, and discs of which every two meet around a gap."""
     rng = np.random.default_rng(8)
     grid = np.stack(np.meshgrid(np.linspace(-3, 3, 181), np.linspace(-3, 3, 181)), axis=-1).reshape(-1, 2)
     drawn = [(rng.uniform(-1, 1, (3, 2)), rng.uniform(0.05, 1.5, 3)) for _ in range(60)]

@@ -121,9 +121,7 @@ SIZES = (60.0, 30.0, 15.0, 8.0, 4.0, 2.0, 1.0)
 
 
 def swing(machine: LoopMachine, axis: int) -> Array:
-    """A way on which all axes swing at their own pace, about a pose whose one axis stands at half a
-    turn, or anywhere.
-    """
+    """A way on which all axes swing, about a pose whose one axis stands at half a turn, or anywhere."""
     turns = machine.closure.angles[axis]
     centres = machine.with_axis_at(axis, 180.0, 5) if turns else machine.draw(5, np.random.default_rng(9))
     time = np.linspace(0.0, 2 * np.pi, STEPS)

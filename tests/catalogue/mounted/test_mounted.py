@@ -111,9 +111,7 @@ def test_the_documented_cases() -> None:
 
 @EVERY_MECHANISM
 def test_the_nearest_rotation_is_that_of_the_flange(mechanism: Mechanism) -> None:
-    """A rotation out of reach: the flange takes the nearest of all its turns about its axis. Where x and y are fixed a
-    tool aside is then elsewhere.
-    """
+    """A rotation out of reach: the flange takes the nearest of all its turns about its axis."""
     if mechanism.task.turning is not Turning.ABOUT_Z or not mechanism.task.position.startswith("xy"):
         return
     sample, rng = sample_of(mechanism), np.random.default_rng(3)

@@ -122,9 +122,7 @@ def test_without_the_offset_there_is_no_second_crossing() -> None:
 
 @pytest.mark.long
 def test_a_path_in_one_configuration_is_followed() -> None:
-    """Small steps with the reference at the previous result: where the path keeps its
-    configuration, it is found again.
-    """
+    """Small steps with the reference at the previous result, in one configuration."""
     robot, rng = arm(60.0), np.random.default_rng(6)
     followed = 0
     while followed < 2:

@@ -103,9 +103,7 @@ FOLDED = {**ARM, "a1": 0.0, "a3": 0.0, "d4": ARM["a2"], "d6": 0.0}
 def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(
     lateral: float, unit: float, lengths: dict[str, float]
 ) -> None:
-    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast where the elbow is singular, or are
-    free.
-    """
+    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast there, or are free."""
     rng = np.random.default_rng(19)
     near = planted("elbow", lateral, 36, 20).axes
     near[:, 2] += 90.0 - STRAIGHT
@@ -173,10 +171,7 @@ def test_nothing_is_missed_that_a_scan_finds(kind: str, lateral: float) -> None:
 def scanned(
     robot: softkin.Ac6RZRYRYRXRYRZJ6Offset, frames: list[softkin.Frame], trials: int = 6000
 ) -> list[list[float]]:
-    """A6 (radians) at every simple root that changes the sign of the trial between neighbours of a scan, by frame.
-
-    The roots of all frames are closed in together.
-    """
+    """A6 (radians) at every simple root that changes the sign of the trial between neighbours of a scan, by frame."""
     joint = np.linspace(0.0, 2 * np.pi, trials + 1)
     goals = np.array([[*frame.position, *np.ravel(frame.rotation)] for frame in frames])
     starts = []
