@@ -105,15 +105,12 @@ def test_positions_and_rates(name: str) -> None:
             continue
         assert status == 0
         commanded = ["xyz".index(letter) for letter in machine.mechanism.task.position]
-        assert [tcp[i] for i in commanded] == pytest.approx(
-            [frame.position[i] for i in commanded], abs=1e-9 * machine.scale
-        )
+        assert np.abs(np.subtract(tcp[:3], frame.position)[commanded]).max(initial=0.0) <= 1e-9 * machine.scale
         assert np.allclose(machine.rotation(tcp, frame.rotation), frame.rotation, atol=1e-9)
         assert tcp[3 + machine.angles :] == [0.0] * (LENGTH - 3 - machine.angles)
         margins = machine.twin.singularity(axes).margins.values()
-        if min((abs(m) for m in margins), default=1.0) < SINGULAR or (
-            machine.angles == 3 and abs(abs(tcp[4]) - 90.0) < 1.0
-        ):
+        is_level = machine.angles == 3 and abs(abs(tcp[4]) - 90.0) < 1.0
+        if is_level or min((abs(m) for m in margins), default=1.0) < SINGULAR:
             continue
         machine.choose(configuration[: machine.twin.BRANCHES])
         status, found = machine.call(INVERSE, tcp, axes)

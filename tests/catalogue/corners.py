@@ -58,9 +58,8 @@ class Corner:
 
     def beside(self, distances: Array) -> Array:
         """The axis values where every factor is at one of the distances (factors,) or (n, factors)."""
-        return self.axes + np.einsum(
-            "njf,nf->nj", self.ways, np.broadcast_to(distances, (len(self.axes), len(self.names)))
-        )
+        away = np.broadcast_to(distances, (len(self.axes), len(self.names)))
+        return self.axes + np.einsum("njf,nf->nj", self.ways, away)
 
 
 @cache

@@ -211,14 +211,11 @@ def loop_machines_of(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
     assert mechanism.assembly is not None
     rng = np.random.default_rng(23)
     modes = [{mechanism.assembly.parameter: mode} for mode in (False, True)]
-    found = [
-        loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | mode) for k, mode in enumerate(modes)
-    ]
+    found = [loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | m) for k, m in enumerate(modes)]
     while len(found) < 4:
         try:
-            found.append(
-                loop_machine(mechanism, f"random {len(found) - 1}", _unequal(mechanism, rng) | modes[len(found) - 2])
-            )
+            given = _unequal(mechanism, rng) | modes[len(found) - 2]
+            found.append(loop_machine(mechanism, f"random {len(found) - 1}", given))
         except softkin.KinematicsError as refused:
             assert refused.status is softkin.Status.NOT_INITIALIZED  # noqa: PT017 - dimensions that form no machine
     return tuple(found)

@@ -53,7 +53,6 @@ class _Text:
         self.names["power"] = mpmath.power
 
     def of(self, expression: sp.Basic) -> str:
-        """The text of an expression."""
         if isinstance(expression, sp.Symbol) and expression != DEGREE:
             return f"known[{expression.name!r}]"
         if (number := _number(expression)) is not None:

@@ -5,6 +5,7 @@ import numpy as np
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 from tests.catalogue.roots import distance, ends_from
+from tests.orthonormal import rodrigues
 
 RATHER_FAR = 0.4
 """How far (radians, or reaches) the search for another posture of the same pose starts from the first."""
@@ -46,9 +47,7 @@ def inward(machine: Machine, axes: Array) -> tuple[Array, Array]:
     for way in (size, -size):  # what is of first order cancels
         there, turned = machine.closure.frames(joints + way)
         spin = np.einsum("nij,nkj->nik", turned, rotations)
-        turns = np.stack(
-            [spin[:, 2, 1] - spin[:, 1, 2], spin[:, 0, 2] - spin[:, 2, 0], spin[:, 1, 0] - spin[:, 0, 1]], axis=1
-        )
+        turns = np.stack([spin[:, i, j] - spin[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=1)
         bent += np.hstack([(there - positions)[:, machine.closure.task] / machine.reach, turns / 2])[:, : bent.shape[1]]
     side = np.sign(np.sum(bent * twist, axis=1, keepdims=True))
     assert (side != 0).all()
@@ -64,11 +63,6 @@ def twisted(
     machine: Machine, frames: tuple[Array, Array], shifts: Array, turns: Array, size: float
 ) -> tuple[Array, Array]:
     """Poses moved by some size of a twist."""
-    angles = size * np.linalg.norm(turns, axis=1)
-    k = turns / np.maximum(np.linalg.norm(turns, axis=1, keepdims=True), 1e-300)
-    cross = np.zeros((len(k), 3, 3))
-    for i, j, a, sign in ((0, 1, 2, -1), (0, 2, 1, 1), (1, 2, 0, -1)):
-        cross[:, i, j], cross[:, j, i] = sign * k[:, a], -sign * k[:, a]
-    half = np.sin(angles / 2)[:, None, None]
-    rotation = np.eye(3) + np.sin(angles)[:, None, None] * cross + 2 * half**2 * (cross @ cross)
+    angles = np.linalg.norm(turns, axis=1)
+    rotation = rodrigues(turns / np.maximum(angles, 1e-300)[:, None], size * angles)
     return frames[0] + size * machine.reach * shifts, rotation @ frames[1]

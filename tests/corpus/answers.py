@@ -80,9 +80,7 @@ def _forward(one: Robot, question: Question) -> Answer:
 
 
 def _same(rows: Any, others: Any) -> bool:
-    return all(
-        abs(a - b) <= 1e-12 for row, other in zip(rows, others, strict=True) for a, b in zip(row, other, strict=True)
-    )
+    return all(abs(a - b) <= 1e-12 for r, o in zip(rows, others, strict=True) for a, b in zip(r, o, strict=True))
 
 
 def _inverse(one: Robot, question: Question) -> Answer:

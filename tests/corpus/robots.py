@@ -33,9 +33,7 @@ class Robot:
 
     def changed(self, **parameters: float) -> Robot:
         """The same robot with other parameters of its last part that knows them."""
-        return robot(
-            [part | {"parameters": part["parameters"] | _known(part["name"], parameters)} for part in self.recipe]
-        )
+        return robot([p | {"parameters": p["parameters"] | _known(p["name"], parameters)} for p in self.recipe])
 
 
 def robot(recipe: Recipe) -> Robot:

@@ -24,6 +24,12 @@ def rails(arm: float, *points: tuple[float, float]) -> dict[str, float]:
     return {"arm_length": arm} | named
 
 
+def around(radius: float, *directions: float) -> list[tuple[float, float]]:
+    """Points of a circle, at 90, 210 and 330 degrees where no others are given."""
+    turns = [radians(a) for a in directions or (90.0, 210.0, 330.0)]
+    return [(radius * cos(turn), radius * sin(turn)) for turn in turns]
+
+
 def five_bar(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
     """A five-bar: its arms, half the distance of its drives and half that of the joints on its plate."""
     return {"inner_arm": inner, "outer_arm": outer, "displacement": displacement, "tcp_displacement": plate}

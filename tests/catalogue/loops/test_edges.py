@@ -55,9 +55,7 @@ def test_a_leg_that_cannot_aim_refuses_in_every_slot(name: str) -> None:
 def test_the_side_does_not_depend_on_how_legs_are_numbered(name: str) -> None:
     """Below is below: turned round, a machine is the same machine with its axes exchanged."""
     dimensions, axes = OTHER_WAY_ROUND[name]
-    renamed = {
-        key.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): value for key, value in dimensions.items()
-    }
+    renamed = {n.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): v for n, v in dimensions.items()}
     swapped = name == "MC_KIN_TYPE_12_XY"
     same = dict(dimensions, swap_xy=0.0) if swapped else renamed
     for flag in (False, True):

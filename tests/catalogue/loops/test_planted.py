@@ -56,9 +56,7 @@ def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mec
         assert any(right in text for text in texts), f"{short} has no {right!r}"
     texts = [_changed(text, changes) for text in texts]
     texts[1] = re.sub(rf"\b({'|'.join(constants)})\b", r"k.\1", texts[1])
-    scalar, arrays, unrolled = (
-        _loaded(f"{name} with {changes[0][1]}", text) for name, text in zip(names, texts, strict=True)
-    )
+    scalar, arrays, unrolled = (_loaded(f"{n} with {changes[0][1]}", t) for n, t in zip(names, texts, strict=True))
     scalar.__dict__["unrolled"] = unrolled.unrolled
     found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
     programs = arrays.ArrayPrograms  # type: ignore[attr-defined]

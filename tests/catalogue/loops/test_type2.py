@@ -137,9 +137,7 @@ def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
         beyond = asked(line.other, behind, line.configuration, here)
         assert beyond is not None
         assert np.abs(here - beyond).max() < 1e-4 * line.machine.reach
-        values = [
-            determinant(line.machine, a, p) for a, p in ((line.axes, line.start), (here, before), (beyond, behind))
-        ]
+        values = [determinant(line.machine, *p) for p in ((line.axes, line.start), (here, before), (beyond, behind))]
         assert np.abs(values[1:]).max() < 1e-5 * abs(values[0])
         assert np.sign(values[0]) == np.sign(values[1]) == -np.sign(values[2])
 

@@ -16,6 +16,7 @@ from tests.catalogue.mounted.machines import BASE, EVERY, LATERAL, TOOL, Sample,
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal, status_of
 from tests.catalogue.search.arms import frame as frame_of_arm
+from tests.orthonormal import turned
 from tests.text.samples import tilted
 
 pytestmark = [pytest.mark.long("Hexapod"), pytest.mark.broad]
@@ -116,10 +117,7 @@ def test_the_nearest_rotation_is_that_of_the_flange(mechanism: Mechanism) -> Non
         return
     sample, rng = sample_of(mechanism), np.random.default_rng(3)
     robot = sample.robot.with_tool(TOOL).with_base(BASE)
-    around = np.radians(np.linspace(0.0, 360.0, 721))
-    turns = np.zeros((721, 3, 3))
-    turns[:, 0, 0] = turns[:, 1, 1] = np.cos(around)
-    turns[:, 1, 0], turns[:, 0, 1], turns[:, 2, 2] = np.sin(around), -np.sin(around), 1.0
+    turns = turned(2, np.radians(np.linspace(0.0, 360.0, 721)))
     zero = np.array(sample.robot.orientation_image().rotation)
     answered = 0
     for axes in sample.axes.tolist():

@@ -125,10 +125,8 @@ def test_a_start_upside_down_has_no_heading(mechanism: Mechanism, machines: tupl
     """Of a platform that turns about z, a start that is upside down is refused."""
     if len(machines[0].closure.axes_of_turn) == 1:
         axes = tuple(machines[0].draw(1, np.random.default_rng(1))[0])
-        assert (
-            refusal(machines[0].robot.forward, axes, start=((0.0, 0.0, 0.0), np.diag((1.0, -1.0, -1.0))))
-            is Status.BAD_INPUT
-        )
+        start = (0.0, 0.0, 0.0), np.diag((1.0, -1.0, -1.0))
+        assert refusal(machines[0].robot.forward, axes, start=start) is Status.BAD_INPUT
 
 
 def test_legs_numbered_the_other_way_round(machines: tuple[TurningMachine, ...]) -> None:
