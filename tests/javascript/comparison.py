@@ -83,7 +83,6 @@ class Comparison:
         self.known = _answers(json.dumps(self.robot.recipe))
 
     def compare(self, question: Answer, answers: Iterator[Answer]) -> None:
-        """Compare the answers to the calls of a question."""
         before = len(self.found)
         if question["call"] == "forward":
             self._forward(question, next(answers))
@@ -307,7 +306,6 @@ def compared(
 
 
 def differences(every: list[Comparison]) -> list[str]:
-    """All differences, in words."""
     return [text for one in every for text in one.found]
 
 

@@ -91,6 +91,7 @@ def made(name: str) -> Made:
     return Made(mechanism, built, robot, closure, reach)
 
 
+@cache
 def built_of(mechanism: Mechanism) -> Built:
     """What `derive_one` makes of a mechanism, with every check but without pictures."""
     whole = derive_and_measure(mechanism)
