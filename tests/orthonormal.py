@@ -12,19 +12,26 @@ ALLOWED, REFUSED = 0.9e-4, 1.1e-4
 """Errors on both sides of what is a rotation."""
 
 
-def rodrigues(axis: ArrayLike, angle: float) -> Array:
-    """The rotation about a unit vector by an angle in radians."""
-    cross = np.cross(np.eye(3), axis)
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
+def rodrigues(axis: ArrayLike, angle: ArrayLike) -> Array:
+    """The rotation about a unit vector by an angle in radians; of rows of vectors or angles one each."""
+    cross, angles = np.cross(np.eye(3), np.asarray(axis)[..., None, :]), np.asarray(angle)[..., None, None]
+    return np.asarray(np.eye(3) + np.sin(angles) * cross + 2.0 * np.sin(angles / 2.0) ** 2 * (cross @ cross))
+
+
+def turned(axis: int, angle: ArrayLike) -> Array:
+    """The rotation about a coordinate axis by an angle in radians, or by each of many."""
+    return rodrigues(np.eye(3)[axis], angle)
 
 
 def about(axis: int, degrees: float) -> Array:
     """The rotation about a coordinate axis."""
-    turned, (i, j) = np.eye(3), ((axis + 1) % 3, (axis + 2) % 3)
-    turned[i, i] = turned[j, j] = np.cos(np.radians(degrees))
-    turned[j, i] = np.sin(np.radians(degrees))
-    turned[i, j] = -turned[j, i]
-    return turned
+    return turned(axis, np.radians(degrees))
+
+
+def swings(first: Array, second: Array) -> Array:
+    """The smallest rotations that take unit vectors to others, row by row."""
+    cross, agree = np.cross(np.eye(3), np.cross(first, second)[..., None, :]), np.sum(first * second, axis=-1)
+    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + agree)[..., None, None])
 
 
 def random_rotations(count: int, seed: int | Generator) -> Array:

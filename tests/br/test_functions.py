@@ -91,9 +91,7 @@ class Machine:
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.parametrize("name", NAMES)
 def test_positions_and_rates(name: str) -> None:
-    """Of recorded poses: the position is that of Python, the inverse finds the axes again near them, and both
-    derivatives are those of the positions along a small step; what Python refuses is refused with its status.
-    """
+    """Of recorded poses: positions, axes and both derivatives; what Python refuses is refused with its status."""
     machine = Machine(name)
     count = len(machine.mechanism.joints)
     rng = np.random.default_rng(3)
@@ -107,15 +105,12 @@ def test_positions_and_rates(name: str) -> None:
             continue
         assert status == 0
         commanded = ["xyz".index(letter) for letter in machine.mechanism.task.position]
-        assert [tcp[i] for i in commanded] == pytest.approx(
-            [frame.position[i] for i in commanded], abs=1e-9 * machine.scale
-        )
+        assert np.abs(np.subtract(tcp[:3], frame.position)[commanded]).max(initial=0.0) <= 1e-9 * machine.scale
         assert np.allclose(machine.rotation(tcp, frame.rotation), frame.rotation, atol=1e-9)
         assert tcp[3 + machine.angles :] == [0.0] * (LENGTH - 3 - machine.angles)
         margins = machine.twin.singularity(axes).margins.values()
-        if min((abs(m) for m in margins), default=1.0) < SINGULAR or (
-            machine.angles == 3 and abs(abs(tcp[4]) - 90.0) < 1.0
-        ):
+        is_level = machine.angles == 3 and abs(abs(tcp[4]) - 90.0) < 1.0
+        if is_level or min((abs(m) for m in margins), default=1.0) < SINGULAR:
             continue
         machine.choose(configuration[: machine.twin.BRANCHES])
         status, found = machine.call(INVERSE, tcp, axes)
@@ -142,9 +137,7 @@ def test_positions_and_rates(name: str) -> None:
 @pytest.mark.slow("Ac6_RZ", "ThreeParallel", "Planar")
 @pytest.mark.parametrize("name", NAMES)
 def test_wire_frame(name: str) -> None:
-    """At recorded poses at most sixteen edges, one of which ends at the tool where there is room for all; those of a
-    chain follow each other from the base; what has no pose is refused.
-    """
+    """At recorded poses at most sixteen edges, which follow each other from the base to the tool."""
     machine, compared = Machine(name), 0
     for axes in recorded(name)[:16]:
         count, edges = machine.wire_frame(axes)

@@ -89,5 +89,4 @@ def written(texts: Mapping[str, str]) -> Path:
 
 
 def files_of(part: Part) -> Mapping[str, str]:
-    """All files of one machine."""
     return package.files([part])

@@ -14,6 +14,7 @@ from derive.geometry.frames import Factor, Motion
 from derive.ir.constants import DEGREE
 from tests.catalogue.robots import KR6_R900, UR5
 from tests.mechanisms import named
+from tests.orthonormal import turned
 
 SCARA = {"link_length_1": 325.0, "link_length_2": 225.0}
 TILT, SHIFT, GAIN = np.degrees(5e-3), 5.0, 1e-4
@@ -130,10 +131,9 @@ class Truth:
 
 
 def about(axis: int, degrees: float) -> Array:
-    """A rotation about x, y or z, by Rodrigues' formula."""
-    across = np.cross(np.eye(3)[axis], np.eye(3)).T
+    """A rotation about x, y or z."""
     found = np.eye(4)
-    found[:3, :3] += np.sin(DEG * degrees) * across + (1.0 - np.cos(DEG * degrees)) * across @ across
+    found[:3, :3] = turned(axis, DEG * degrees)
     return found
 
 

@@ -62,9 +62,7 @@ def test_forward_is_the_chain_and_inverse_meets_it(name: str) -> None:
 
 @pytest.mark.parametrize("unit", (1.0, 1e-3))
 def test_every_axis_stays_on_its_turn(unit: float) -> None:
-    """A range of one turn for every axis, far references, millimetres and metres, and poses beside singular ones: the
-    true machine may have a joint on the other side of 180 degrees than the nominal one.
-    """
+    """A range of one turn for every axis, far references, both units; the true machine may be beyond 180 degrees."""
     rng = np.random.default_rng(3)
     lengths = {name: value * unit for name, value in KR6_R900.items()}
     robot = softkin.ArticulatedRobot6DOF(**lengths, limits={f"A{i}": (-180.0, 180.0) for i in range(1, 7)})
@@ -303,9 +301,7 @@ def test_garbage_is_refused() -> None:
     "name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_ThreeParallel", "Kin_Scara3_Z", "Softkin_TableTable_AC"]
 )
 def test_no_pose_is_lost(name: str) -> None:
-    """Random poses; and poses at and beside singular ones, half of the angles next to a multiple of 90 degrees: there
-    one in five hundred may be, where two singularities meet.
-    """
+    """Random poses; and poses at and beside singular ones: there one in five hundred may be."""
     rng, beyond = np.random.default_rng(11), 0
     for _ in range(10):
         machine = planted(name, rng)

@@ -1,6 +1,4 @@
-"""Machines derived with their deviations as inputs: Python, C, JavaScript and Structured Text against the chain
-multiplied out, and against `robot.calibrated`.
-"""
+"""Machines derived with deviations as inputs, in four languages, against their chains and `robot.calibrated`."""
 
 from dataclasses import dataclass, replace
 from functools import cache

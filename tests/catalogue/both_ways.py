@@ -57,3 +57,12 @@ def inverse(
     answered = statuses == Status.OK
     assert (np.abs(single - found)[answered] < SAME).all()
     return found, statuses
+
+
+def missed(robot: softkin.Mechanism, axes: Array, references: ArrayLike) -> tuple[float, float]:
+    """The largest errors of places and of rotations with which poses are answered on their branch; none is refused."""
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
+    assert (statuses == Status.OK).all(), f"{robot}: {axes[statuses != Status.OK][:1].tolist()}"
+    reached, turned, _, _ = robot.forward_batch(found)
+    return float(np.abs(reached - positions).max()), float(np.abs(turned - rotations).max())

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
 from derive.geometry.frames import Motion
 from derive.ir.constants import DEGREE
+from tests.orthonormal import swings, turned
 
 Array = NDArray[np.float64]
 STEP = 1e-30
@@ -83,12 +84,9 @@ class Closure:
 
     def turns(self, joints: Array) -> Array:
         """The rotation of a loop's flange: about z by the heading that the joints tell, where they do."""
-        rotation = np.tile(np.eye(3, dtype=joints.dtype), (len(joints), 1, 1))
-        if self.mechanism.heading is not None:
-            heading = self.at_joints([self.mechanism.heading], joints)[:, 0]
-            rotation[:, 0, 0] = rotation[:, 1, 1] = np.cos(heading)
-            rotation[:, 1, 0], rotation[:, 0, 1] = np.sin(heading), -np.sin(heading)
-        return rotation
+        if self.mechanism.heading is None:
+            return np.tile(np.eye(3, dtype=joints.dtype), (len(joints), 1, 1))
+        return turned(2, self.at_joints([self.mechanism.heading], joints)[:, 0])
 
     def frames(self, joints: Array) -> tuple[Array, Array]:
         """Position and rotation at the end of a chain."""
@@ -123,9 +121,8 @@ class Closure:
         if self.mechanism.followed_turns:
             rotations = self.nearest(joints, rotations)
         lengths = (position - positions)[:, self.task]
-        return np.hstack(
-            [lengths, (rotation - rotations)[:, :, self.columns].reshape(len(lengths), 3 * len(self.columns))]
-        )
+        apart = (rotation - rotations)[:, :, self.columns]
+        return np.hstack([lengths, apart.reshape(len(lengths), 3 * len(self.columns))])
 
     def nearest(self, joints: Array, rotations: Array) -> Array:
         """The rotations swung, by the smallest turn, until the tool is in the plane in which the pitch moves it."""
@@ -137,7 +134,7 @@ class Closure:
         commanded = rotations @ tool
         seen = commanded - across * np.sum(across * commanded, axis=1)[:, None]
         seen /= np.linalg.norm(seen, axis=1)[:, None]
-        return np.asarray(_swings(commanded, seen) @ rotations)
+        return np.asarray(swings(commanded, seen) @ rotations)
 
     def _about(self, joints: Array) -> list[Array]:
         """The directions of the axes of the pitch and the roll: those about which the last turning joints turn."""
@@ -233,7 +230,6 @@ class Formulas:
         self._made: dict[tuple[tuple[sp.Symbol, ...], tuple[sp.Expr, ...]], Formula] = {}
 
     def at_joints(self, expressions: tuple[sp.Expr, ...]) -> Formula:
-        """Expressions in joint values."""
         return self._of(expressions, self._joints)
 
     def at_pose(self, expressions: tuple[sp.Expr, ...]) -> Formula:
@@ -292,14 +288,11 @@ class Formulas:
 
 @cache
 def formulas_of(mechanism: Mechanism) -> Formulas:
-    """Those of one mechanism."""
     return Formulas(mechanism)
 
 
 def derivative(function: Callable[..., Array], at: Array, *fixed: Array) -> Array:
-    """∂ outputs / ∂ inputs of every row, by complex steps in one call: of a function of the inputs, and of further
-    values by row.
-    """
+    """∂ outputs / ∂ inputs of every row, by complex steps in one call; further: values by row."""
     count, width = at.shape
     shifted = np.tile(at.astype(complex), (width, 1, 1))
     for i in range(width):
@@ -307,15 +300,6 @@ def derivative(function: Callable[..., Array], at: Array, *fixed: Array) -> Arra
     repeated = [np.tile(values, (width, *(1 for _ in values.shape[1:]))) for values in fixed]
     found = np.imag(function(shifted.reshape(width * count, width), *repeated)) / STEP
     return np.ascontiguousarray(np.moveaxis(found.reshape(width, count, found.shape[1]), 0, 2))
-
-
-def _swings(first: Array, second: Array) -> Array:
-    """The smallest rotations that take unit vectors to others."""
-    axis, agree = np.cross(first, second), np.sum(first * second, axis=1)
-    cross = np.zeros((len(first), 3, 3), dtype=axis.dtype)
-    cross[:, 2, 1], cross[:, 0, 2], cross[:, 1, 0] = axis.T
-    cross[:, 1, 2], cross[:, 2, 0], cross[:, 0, 1] = -axis.T
-    return np.asarray(np.eye(3) + cross + cross @ cross / (1.0 + agree)[:, None, None])
 
 
 def _turn(rotation: Array, axis: int, angle: Array) -> None:

@@ -1,5 +1,4 @@
-"""The machines of the tests of corners: special dimensions with coinciding singularities, random ones, both assembly
-modes."""
+"""The machines of the tests of corners: special dimensions, random ones, both assembly modes."""
 
 from collections.abc import Iterator, Mapping
 from functools import cache

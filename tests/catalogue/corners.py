@@ -43,15 +43,12 @@ LONGEST = 0.4
 CONTROLLED = 2e-3
 """A pose of a loop is refused where its type 2 margin is below 1e-3: such poses are no corners."""
 ENDS = 1e-6
-"""Quantities with a boundary keep this distance from it, per reach: the workspace ends there, which is no
-singularity."""
+"""Quantities with a boundary keep this distance from it, per reach: there the workspace ends."""
 
 
 @dataclass(frozen=True)
 class Corner:
-    """Axis values at which some factors vanish, and the motions of the axes by which each of them leaves zero at unit
-    rate.
-    """
+    """Axis values at which factors vanish, and the motions by which each of them leaves zero at unit rate."""
 
     names: tuple[str, ...]
     axes: Array
@@ -61,9 +58,8 @@ class Corner:
 
     def beside(self, distances: Array) -> Array:
         """The axis values where every factor is at one of the distances (factors,) or (n, factors)."""
-        return self.axes + np.einsum(
-            "njf,nf->nj", self.ways, np.broadcast_to(distances, (len(self.axes), len(self.names)))
-        )
+        away = np.broadcast_to(distances, (len(self.axes), len(self.names)))
+        return self.axes + np.einsum("njf,nf->nj", self.ways, away)
 
 
 @cache
@@ -147,9 +143,7 @@ def _slopes(machine: Machine, functions: Factors, axes: Array) -> Array:
 def _places(
     machine: Machine, every: Factors, combined: list[tuple[int, ...]], count: int, rng: Generator
 ) -> Iterator[Array]:
-    """Of every combination: the end of Newton's method from any start, if all its factors vanish there and the machine
-    can be there.
-    """
+    """Of every combination: the end of Newton's method, if all its factors vanish there on this machine."""
     if not combined:
         return
     axes = np.concatenate([_starts(machine, rng) for _ in combined])

@@ -9,26 +9,43 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from tests.catalogue.closure import Array
-from tests.catalogue.five_axes import (
-    Pose,
-    dual_table,
-    five_axes,
-    gantry_head,
-    head_head,
-    head_head_a,
-    head_table,
-    head_table_a,
-    nutating_head,
-    nutating_head_a,
-    nutating_head_table,
-    nutating_table,
-    nutating_table_a,
-    table_table,
-    table_table_b,
-)
+from tests.catalogue.five_axes import tool
 
+Pose = tuple[Array, Array, Array, Array | tuple[Array, ...] | tuple[tuple[Array, ...], ...]]
 Formula = Callable[[Mapping[str, float], Sequence[Array]], Pose]
 TURN = 2 * np.pi
+
+
+def _of_order(head: str, table: str) -> Formula:
+    """A five-axis machine with these turning axes in its head and in its table."""
+
+    def formula(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+        tips, rotations = tool(head, table, p, np.asarray(q))
+        return *tips.T, tuple(np.moveaxis(rotations, 0, 2))
+
+    return formula
+
+
+def _gantry_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Turns about y, the turned x and the flange's z, multiplied out."""
+    b, a, c = q[3:]
+    (ca, cb, cc), (sa, sb, sc) = ([f(v) for v in (a, b, c)] for f in (np.cos, np.sin))
+    rotation = (
+        (cb * cc + sb * sa * sc, sb * sa * cc - cb * sc, sb * ca),
+        (ca * sc, ca * cc, -sa),
+        (cb * sa * sc - sb * cc, sb * sc + cb * sa * cc, cb * ca),
+    )
+    flange = [p[f"flange_{w}"] for w in "xyz"]
+    return *(q[i] + sum(r * o for r, o in zip(rotation[i], flange, strict=True)) for i in range(3)), rotation
+
+
+def _five_axes(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The azimuth turns the inclination: the tool along +Z, or along -Z, goes to +X with a positive inclination."""
+    side, a, b = p["tool_side"], q[3], q[4]
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), side * np.sin(b)
+    rotation = ((ca * cb, -sa, ca * sb), (sa * cb, ca, sa * sb), (-sb, 0 * a, cb))
+    reach = side * p["tool_length"]
+    return q[0] + reach * ca * sb, q[1] + reach * sa * sb, q[2] + reach * cb, rotation
 
 
 def _arms(lengths: Sequence[float], angles: Sequence[Array]) -> tuple[Array, Array]:
@@ -189,25 +206,25 @@ H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
-    "Kin_5Axes": five_axes,
-    "Softkin_HeadHead_CA": head_head_a,
-    "Softkin_HeadHead_CB": head_head,
-    "Softkin_HeadTable_AC": head_table_a,
-    "Softkin_HeadTable_BC": head_table,
-    "Softkin_NutatingHead_CA": nutating_head_a,
-    "Softkin_NutatingHead_CB": nutating_head,
-    "Softkin_NutatingTable_BC": nutating_table,
-    "Softkin_NutatingHeadTable_BC": nutating_head_table,
-    "Softkin_NutatingTable_AC": nutating_table_a,
+    "Kin_5Axes": _five_axes,
+    "Softkin_HeadHead_CA": _of_order("CA", ""),
+    "Softkin_HeadHead_CB": _of_order("CB", ""),
+    "Softkin_HeadTable_AC": _of_order("A", "C"),
+    "Softkin_HeadTable_BC": _of_order("B", "C"),
+    "Softkin_NutatingHead_CA": _of_order("CA", ""),
+    "Softkin_NutatingHead_CB": _of_order("CB", ""),
+    "Softkin_NutatingTable_BC": _of_order("", "BC"),
+    "Softkin_NutatingHeadTable_BC": _of_order("B", "C"),
+    "Softkin_NutatingTable_AC": _of_order("", "AC"),
     "Softkin_Palletizer": _palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,
-    "Softkin_TableTable_AB": dual_table,
-    "Softkin_TableTable_AC": table_table,
-    "Softkin_TableTable_BC": table_table_b,
+    "Softkin_TableTable_AB": _of_order("", "AB"),
+    "Softkin_TableTable_AC": _of_order("", "AC"),
+    "Softkin_TableTable_BC": _of_order("", "BC"),
     "Softkin_Tracyl": _mantle,
     "Softkin_Transmit": _face,
-    "Kin_Ac6_TXTYTZRYRXRZ": gantry_head,
+    "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,
     "Kin_Crane": _crane,

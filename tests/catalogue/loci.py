@@ -44,11 +44,7 @@ class Locus:
         return -1.0 if self.branch is None and self.second else 1.0
 
     def moved(self, axes: Array, shift: float | Array, together: int | None = None) -> Array:
-        """The axis values at a shift (radians, or per reach) from the locus, one for all or a row.
-
-        A row without such a place is replaced by one that has it, of as many as stand together; where none of these
-        has it, they stay where they are.
-        """
+        """The axis values at a shift (radians, per reach) from the locus; rows without a place have another's."""
         rows, exists = np.arange(len(axes)), self.exists(axes)
         stays = np.zeros(len(axes), dtype=bool)
         for start in range(0, len(axes), together or len(axes)):
@@ -92,9 +88,7 @@ class Locus:
         return angle - self._value(there) / (across * np.cos(angle) - along * np.sin(angle))
 
     def _arc(self, joints: Array) -> tuple[Array, Array]:
-        """The middle of the arc on which the quantity is positive, and half its width; within reason, where it never
-        vanishes.
-        """
+        """The middle and half the width of the arc on which the quantity is positive, within reason."""
         level, along, across = self._harmonic(joints)
         return np.arctan2(across, along), np.arccos(np.clip(-level / np.hypot(along, across), -OFTEN, OFTEN))
 
@@ -115,9 +109,7 @@ class Locus:
 
 @cache
 def loci(machine: Machine) -> tuple[Locus, ...]:
-    """Every place where some quantity of the description vanishes; no two branches' by the same joint, where that can
-    be.
-    """
+    """Every place where some quantity vanishes; no two branches' by the same joint, where that can be."""
     quantities: list[tuple[int | None, sp.Expr]] = [(i, b.indicator) for i, b in enumerate(machine.mechanism.branches)]
     quantities += [(None, sp.sympify(p)) for p in machine.mechanism.positive]
     chosen: dict[int, Locus] = {}
@@ -158,10 +150,7 @@ def _disturb(places: Sequence[Locus]) -> bool:
 
 
 def _meeting(places: Sequence[Locus], axes: Array, shifts: Sequence[Array]) -> Array:
-    """Axis values where all quantities vanish, found by Newton's method from near, each then shifted by its joint.
-
-    A row from which none is found is replaced by one that has it, or stays where it is if there is none.
-    """
+    """Axis values where all quantities vanish, by Newton's method; a row without one has that of another."""
     machine = places[0].machine
     joints, quantities = machine.closure.joints(axes), [p.quantity for p in places]
     for _ in range(PASSES):

@@ -18,9 +18,7 @@ from tests.mechanisms import catalogue
 from tests.random_axes import random_axes
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods and not m.is_platform)
-"""Loops whose plate keeps its orientation, with a tool that turns on it or without. Those whose plate turns are in
-`turning_machines.py`.
-"""
+"""Loops whose plate keeps its orientation; those whose plate turns are in `turning_machines.py`."""
 CANDIDATES = 6000
 REGULAR = 0.08
 """Indicators at a regular pose are at least this part of their largest value."""
@@ -33,9 +31,7 @@ TURNED = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
 
 
 class LoopClosure(Closure):
-    """The closure of a closed loop. The indicator of the assembly alone decides which solution
-    belongs to this machine.
-    """
+    """The closure of a closed loop. The assembly's indicator alone decides which solution is this machine's."""
 
     def __init__(self, mechanism: Mechanism, parameters: Mapping[str, float], reach: float) -> None:
         super().__init__(mechanism, parameters)
@@ -49,9 +45,7 @@ class LoopClosure(Closure):
         self._equations = (*(r.equation / r.length for r in mechanism.rods), *mechanism.closure)
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
-        """Position and rotation at axis values; not a number where nothing, or nothing on this
-        machine's side, closes.
-        """
+        """Position and rotation at axis values; not a number where nothing closes on this machine's side."""
         joints = self.joints(axes)
         found = np.full((len(axes), 3), np.nan)
         wanted = (self.positive(joints) > 0).all(axis=1)
@@ -149,9 +143,7 @@ class LoopMachine(Machine):
     closure: LoopClosure
 
     def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees)
-        allows.
-        """
+        """Random axis values of regular poses, over several turns where `farthest` (degrees) allows."""
         turning = np.array([j.multi_turn for j in self.mechanism.joints])
         pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
         chosen = pool[rng.integers(len(pool), size=count)]
@@ -219,14 +211,11 @@ def loop_machines_of(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
     assert mechanism.assembly is not None
     rng = np.random.default_rng(23)
     modes = [{mechanism.assembly.parameter: mode} for mode in (False, True)]
-    found = [
-        loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | mode) for k, mode in enumerate(modes)
-    ]
+    found = [loop_machine(mechanism, f"nominal{' other' * k}", _nominal(mechanism) | m) for k, m in enumerate(modes)]
     while len(found) < 4:
         try:
-            found.append(
-                loop_machine(mechanism, f"random {len(found) - 1}", _unequal(mechanism, rng) | modes[len(found) - 2])
-            )
+            given = _unequal(mechanism, rng) | modes[len(found) - 2]
+            found.append(loop_machine(mechanism, f"random {len(found) - 1}", given))
         except softkin.KinematicsError as refused:
             assert refused.status is softkin.Status.NOT_INITIALIZED  # noqa: PT017 - dimensions that form no machine
     return tuple(found)

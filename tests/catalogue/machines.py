@@ -18,8 +18,7 @@ from tests.catalogue.closure import Array, Closure
 from tests.mechanisms import catalogue
 
 MECHANISMS = tuple(m for _, m in catalogue() if not (m.rods or m.drives or m.is_orientation or m.search))
-"""The serial mechanisms: machines of closed loops are in `loop_machines.py`, those with loops in a
-chain in `driven_machines.py`, those of a platform in `hexapod`, orientation kinematics in `coupling`."""
+"""The serial mechanisms; loops, loops in chains, platforms and orientations have files of their own."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
@@ -27,8 +26,7 @@ TURNS = 1000.0
 CLIMBING_TURNS = 720.0
 """The range of an axis with a pitch, which is limited."""
 REGULAR = 0.05
-"""Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least
-this."""
+"""Branch indicators (lengths: per their largest) and positive quantities (per reach) are at least this."""
 UNEQUAL = (320.0, 80.0, 20.0)
 M = TypeVar("M")
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
@@ -47,9 +45,7 @@ class Machine:
     reach: float
 
     def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees)
-        allows.
-        """
+        """Random axis values of regular poses, over several turns where `farthest` (degrees) allows."""
         chosen: list[Array] = []
         while sum(map(len, chosen)) < count:
             axes = self._any(4 * count, rng, farthest)
@@ -79,9 +75,7 @@ class Machine:
 
     @property
     def has_a_reach(self) -> bool:
-        """Whether some positions are out of reach: not where slides move every coordinate, or where there are no
-        branches.
-        """
+        """Whether some positions are out of reach: not where slides move every coordinate, or without branches."""
         return self.robot.BRANCHES > 0 and int((~self.closure.angles & self.solved).sum()) < len(self.closure.task)
 
     @property
@@ -98,11 +92,7 @@ class Machine:
 
     @property
     def branches_meet_together(self) -> bool:
-        """Whether every branch answers where one does: two roots of one equation do, several equations each have a
-        reach.
-
-        Some working modes of a loop are on its other side.
-        """
+        """Whether every branch answers where one does: not of a loop, nor where several equations have a reach each."""
         return self.robot.BRANCHES <= 1 and not self.mechanism.rods
 
     @property
@@ -171,9 +161,7 @@ class Machine:
 
     @property
     def open_robot(self) -> softkin.Mechanism:
-        """The same robot, whose inverse refuses no solution of the closure in its assembly mode: no limits, no edge
-        beside the other mode, and poses that forward kinematics does not find again.
-        """
+        """The same robot, whose inverse refuses no solution of the closure in its assembly mode."""
         is_unchecked = {"check_limits"} | ({"check_forward"} if self.mechanism.is_platform else set())
         return self.changed(**dict.fromkeys(is_unchecked | ({"min_type2_margin"} if self.mechanism.rods else set()), 0))
 

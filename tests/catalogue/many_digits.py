@@ -53,7 +53,6 @@ class _Text:
         self.names["power"] = mpmath.power
 
     def of(self, expression: sp.Basic) -> str:
-        """The text of an expression."""
         if isinstance(expression, sp.Symbol) and expression != DEGREE:
             return f"known[{expression.name!r}]"
         if (number := _number(expression)) is not None:
@@ -92,9 +91,7 @@ def _number(expression: sp.Basic) -> object:
 
 @kept_by_identity(100)
 def _compiled(program: Program) -> _Run:
-    """The program as a Python function. Straight-line programs alone: no loop, no system of equations. Programs that
-    are run only where digits are lost are not run, and no pose that is asked may need one.
-    """
+    """The straight-line program as a Python function, without what runs where digits are lost."""
     text = _Text()
     lines = ["def run(known):", "    known, status = dict(known), ok"]
     for statement in program.body:

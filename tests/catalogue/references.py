@@ -8,11 +8,7 @@ from tests.catalogue.closure import Array
 
 
 def held_at(robot: softkin.Mechanism, axes: ArrayLike, references: ArrayLike | None = None) -> Array | None:
-    """References for poses at axis values, rows or one; of a machine that holds no joint those that are given, or none.
-
-    Where nothing is held the reference may be left out, and is: then the tests of that go on. A held joint keeps the
-    value that the reference has, so that only one which has it where the pose has it leads back to the pose.
-    """
+    """References for poses: those given or none; a held joint keeps its value, else none leads back."""
     if not robot.HELD:
         return None if references is None else np.asarray(references, dtype=float)
     there = np.asarray(axes, dtype=float)

@@ -18,7 +18,6 @@ def refusal(call: Callable[..., object], *arguments: object, says: str | None = 
 
 
 def status_of(call: Callable[..., object], *arguments: object, **given: object) -> Status:
-    """The status that a call ends with."""
     try:
         call(*arguments, **given)
     except KinematicsError as refused:

@@ -18,10 +18,7 @@ STANDING = 1e-14
 
 
 def solutions(machine: Machine, position: Array, rotation: Array, held: Array) -> list[Array]:
-    """The joint values that reach a pose, angles in [-pi, pi), without the mirrors that the machine does not have.
-
-    Joints that are held stay where they are in `held`, of all joints.
-    """
+    """The joint values that reach a pose, in [-pi, pi), mirrors left out; held joints stay where they are in `held`."""
     closure = machine.closure
     rng = np.random.default_rng(77)
     scale = np.where(closure.turning, 1.0, machine.reach)

@@ -1,11 +1,11 @@
-"""What a singular pose allows: a self-motion under which nothing of the pose changes, or a fold where the workspace
-ends."""
+"""What a singular pose allows: a self-motion that changes nothing, or a fold where the workspace ends."""
 
 import numpy as np
 
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
 from tests.catalogue.roots import distance, ends_from
+from tests.orthonormal import rodrigues
 
 RATHER_FAR = 0.4
 """How far (radians, or reaches) the search for another posture of the same pose starts from the first."""
@@ -14,10 +14,7 @@ SECOND_ORDER = 1e-3
 
 
 def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
-    """The joint motion that changes nothing to first order, and the twist that no joint motion makes; of every row.
-
-    Lengths are per reach; of the joint motion the largest entry is 1, of the twist the size.
-    """
+    """The joint motion that changes nothing to first order, and the twist that no joint motion makes; per reach."""
     jacobian = machine.closure.jacobian(axes, machine.closure.poses(axes)[0])
     rows = np.ones(jacobian.shape[1])
     rows[: len(machine.closure.task)] = 1 / machine.reach
@@ -28,9 +25,7 @@ def null_vectors(machine: Machine, axes: Array) -> tuple[Array, Array]:
 
 
 def is_free(machine: Machine, axes: Array) -> Array:
-    """Which rows of singular axis values have another posture rather far away, along the motion
-    that changes nothing.
-    """
+    """Which rows have another posture rather far away, along the motion that changes nothing."""
     motion, _ = null_vectors(machine, axes)
     joints, frames = machine.closure.joints(axes), machine.closure.poses(axes)
     found = np.zeros(len(axes), dtype=bool)
@@ -52,9 +47,7 @@ def inward(machine: Machine, axes: Array) -> tuple[Array, Array]:
     for way in (size, -size):  # what is of first order cancels
         there, turned = machine.closure.frames(joints + way)
         spin = np.einsum("nij,nkj->nik", turned, rotations)
-        turns = np.stack(
-            [spin[:, 2, 1] - spin[:, 1, 2], spin[:, 0, 2] - spin[:, 2, 0], spin[:, 1, 0] - spin[:, 0, 1]], axis=1
-        )
+        turns = np.stack([spin[:, i, j] - spin[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=1)
         bent += np.hstack([(there - positions)[:, machine.closure.task] / machine.reach, turns / 2])[:, : bent.shape[1]]
     side = np.sign(np.sum(bent * twist, axis=1, keepdims=True))
     assert (side != 0).all()
@@ -70,11 +63,6 @@ def twisted(
     machine: Machine, frames: tuple[Array, Array], shifts: Array, turns: Array, size: float
 ) -> tuple[Array, Array]:
     """Poses moved by some size of a twist."""
-    angles = size * np.linalg.norm(turns, axis=1)
-    k = turns / np.maximum(np.linalg.norm(turns, axis=1, keepdims=True), 1e-300)
-    cross = np.zeros((len(k), 3, 3))
-    for i, j, a, sign in ((0, 1, 2, -1), (0, 2, 1, 1), (1, 2, 0, -1)):
-        cross[:, i, j], cross[:, j, i] = sign * k[:, a], -sign * k[:, a]
-    half = np.sin(angles / 2)[:, None, None]
-    rotation = np.eye(3) + np.sin(angles)[:, None, None] * cross + 2 * half**2 * (cross @ cross)
+    angles = np.linalg.norm(turns, axis=1)
+    rotation = rodrigues(turns / np.maximum(angles, 1e-300)[:, None], size * angles)
     return frames[0] + size * machine.reach * shifts, rotation @ frames[1]

@@ -1,7 +1,4 @@
-"""Which poses of a sweep each core is asked: all of few, and of many a share, which is less in Python.
-
-Both answer by the same program, which the tests of the native half show.
-"""
+"""Which poses of a sweep each core is asked: a share of many, which is less in Python."""
 
 import os
 

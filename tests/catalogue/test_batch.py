@@ -24,9 +24,8 @@ def mixed(machine: Machine, rng: Generator) -> tuple[Array, Array, Array, Array]
     robot = machine.robot
     branches = rng.integers(0, 4, (ROWS, robot.BRANCHES))
     branches[::11] = 4
-    periods = np.where(
-        rng.random((ROWS, len(robot.PERIOD_AXES))) < 0.5, 0, rng.integers(-2, 4, (ROWS, len(robot.PERIOD_AXES)))
-    )
+    shape = (ROWS, len(robot.PERIOD_AXES))
+    periods = np.where(rng.random(shape) < 0.5, 0, rng.integers(-2, 4, shape))
     references = rng.uniform(-500, 500, axes.shape)
     references[::19, 0] = np.inf
     return positions, rotations, np.hstack([branches, periods]), references
@@ -175,14 +174,3 @@ def test_several_threads_may_share_a_robot(machines: tuple[Machine, ...]) -> Non
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(lambda _: machine.robot.forward_batch(axes)[0], range(8)):
             assert (found == expected).all()
-
-
-@pytest.mark.parametrize("count", [1, 2, 3])
-def test_any_number_of_rows(machines: tuple[Machine, ...], count: int) -> None:
-    """A batch may have any number of rows, also around the size of a chunk."""
-    machine = machines[1]
-    axes = machine.draw(count, np.random.default_rng(5))
-    forward = machine.robot.forward_batch(axes)
-    found, statuses = machine.robot.inverse_batch(*forward[:3], axes)
-    assert statuses.tolist() == [Status.OK] * count
-    assert np.abs(found - axes).max() < 1e-9

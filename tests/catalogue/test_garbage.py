@@ -51,7 +51,9 @@ def test_axis_values_that_are_no_numbers_of_reasonable_size(machines: tuple[Mach
             values[i] = number
             for call in (robot.forward, robot.orientation, robot.jacobian):
                 assert refusal(call, values) is Status.BAD_INPUT
-            assert robot.singularity(values).is_singular
+            singularity = robot.singularity(values)
+            assert singularity.is_singular and tuple(singularity.margins) == robot.MARGINS
+            assert np.isnan(list(singularity.margins.values())).all()
             table = axes.copy()
             table[3] = values
             positions, rotations, configurations, statuses = robot.forward_batch(table)

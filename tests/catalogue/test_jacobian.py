@@ -70,13 +70,6 @@ def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> N
         assert np.abs(scaled(machine, jacobians(machine, axes) - expected)).max() < slack * ROUNDING
 
 
-def test_it_has_full_rank_at_regular_poses_and_only_there(machines: tuple[Machine, ...]) -> None:
-    for machine in machines:
-        axes = machine.draw(60, np.random.default_rng(3))
-        values = np.linalg.svd(of_solved(machine, axes), compute_uv=False)
-        assert (values[:, -1] > 1e-5).all()
-
-
 def test_the_determinant_is_the_product_of_the_margins(machines: tuple[Machine, ...]) -> None:
     """With whole exponents, and with its sign: crossing a margin of odd exponent turns the determinant round."""
     for machine in few(machines):

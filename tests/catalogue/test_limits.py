@@ -105,9 +105,7 @@ def test_quantities_that_no_axis_sees_have_limits(mechanism: Mechanism, machines
 def test_forward_does_not_test_limits(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     for machine in fitting(machines):
         axes = machine.draw(20, np.random.default_rng(3))
-        limits = {
-            f"{word}_{j.key}": value for j in mechanism.joints for word, value in (("lower", 1.0), ("upper", 2.0))
-        }
+        limits = {f"{word}_{j.key}": v for j in mechanism.joints for word, v in (("lower", 1.0), ("upper", 2.0))}
         found = machine.changed(**limits).forward_batch(axes)
         for narrow, wide in zip(found, machine.robot.forward_batch(axes), strict=True):
             assert (narrow == wide).all()
@@ -125,53 +123,6 @@ def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
             other_turn = joint.multi_turn and axes[i] < -60.0  # its one value inside is a turn further
             if not other_turn:
                 assert outcome(one_sided, machine, axes) is expected
-
-
-@pytest.mark.long("Pos_RRR")
-def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
-    """Up to 350 degrees, wherever the reference is; a named period still rules, and is refused where it is outside."""
-    for machine in fitting(machines)[::2]:
-        turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
-        axes = one_pose(machine, 5)
-        positions, rotations = machine.closure.poses(axes[None])
-        for i in turning:
-            key = machine.mechanism.joints[i].key
-            for low, high in (
-                (axes[i] - 10, axes[i] + 100),
-                (axes[i] - 175, axes[i] + 175),
-                (axes[i] - 100, axes[i] + 250),
-            ):
-                robot = machine.changed(**{f"lower_{key}": low, f"upper_{key}": high})
-                for turns in (-2, 0, 1):
-                    near = axes.copy()
-                    near[i] += 360.0 * turns
-                    near = machine.closure.axes(machine.closure.joints(near[None]))[0]
-                    branch = robot.forward(axes)[1][: robot.BRANCHES]
-                    configuration = branch + (0,) * len(robot.PERIOD_AXES)
-                    found, statuses = robot.inverse_batch(positions, rotations, configuration, near)
-                    assert statuses[0] == Status.OK
-                    assert abs(found[0, i] - axes[i]) < 1e-9
-                    scalar = robot.inverse((positions[0], rotations[0]), configuration, near)
-                    assert abs(scalar[i] - axes[i]) < 1e-9
-                named = list(robot.forward(axes)[1])
-                named[robot.BRANCHES + robot.PERIOD_AXES.index(i)] = 3
-                assert refusal(robot.inverse, (positions[0], rotations[0]), named, axes) is Status.UNREACHABLE
-
-
-def test_a_wider_range_refuses_and_does_not_choose_again(machines: tuple[Machine, ...]) -> None:
-    """The value nearest to the reference is outside, one a turn away is inside: refused."""
-    for machine in fitting(machines)[::2]:
-        axes = one_pose(machine, 6)
-        for i, joint in enumerate(machine.mechanism.joints):
-            if not joint.multi_turn or joint.coupling != 0 or joint.limit_range is not None:
-                continue
-            robot = machine.changed(**{f"lower_{joint.key}": axes[i] - 400.0, f"upper_{joint.key}": axes[i] + 100.0})
-            assert outcome(robot, machine, axes) is Status.OK
-            positions, rotations = machine.closure.poses(axes[None])
-            near = axes.copy()
-            near[i] += 360.0
-            configuration = robot.forward(axes)[1][: robot.BRANCHES] + (0,) * len(robot.PERIOD_AXES)
-            assert robot.inverse_batch(positions, rotations, configuration, near)[1][0] == Status.UNREACHABLE
 
 
 @pytest.mark.serial

@@ -7,22 +7,9 @@ from softkin import Status
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.closure import Array
 from tests.catalogue.machines import Machine
-from tests.orthonormal import random_rotations
+from tests.orthonormal import random_rotations, swings, turned
 
 COUNT = 60
-
-
-def about_z(angle: Array) -> Array:
-    """Rotations about z, by angles in radians."""
-    c, s, o = np.cos(angle), np.sin(angle), 0 * angle
-    return np.moveaxis(np.array([[c, -s, o], [s, c, o], [o, o, o + 1]]), 2, 0)
-
-
-def swing(source: Array, target: Array) -> Array:
-    """The smallest rotation that takes one unit vector to another: Rodrigues about their cross product."""
-    v, c = np.cross(source, target), source @ target
-    k = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + k + k @ k / (1 + c)
 
 
 def projected(machine: Machine, rotations: Array) -> Array:
@@ -45,7 +32,7 @@ def test_the_tool_direction_is_swung_and_the_twist_kept(machines: tuple[Machine,
     for machine in turning(machines):
         rotations = random_rotations(COUNT, 1)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(2)))[1][0]
-        expected = np.array([swing(r[:, 2], flange[:, 2]) @ r for r in rotations])
+        expected = swings(rotations[:, :, 2], flange[:, 2]) @ rotations
         assert np.abs(projected(machine, rotations) - expected).max() < 1e-9
 
 
@@ -55,7 +42,7 @@ def test_it_is_the_nearest_in_the_frobenius_norm(machines: tuple[Machine, ...]) 
     for machine in turning(machines)[1:4]:
         rotations = random_rotations(COUNT // 3, 3)
         flange = machine.closure.poses(machine.draw(1, np.random.default_rng(4)))[1][0]
-        candidates = about_z(angles) @ flange
+        candidates = turned(2, angles) @ flange
         for rotation, found in zip(rotations, projected(machine, rotations), strict=True):
             least = np.sum((candidates - rotation) ** 2, axis=(1, 2)).min()
             distance = np.sum((found - rotation) ** 2)
@@ -76,7 +63,7 @@ def test_the_inverse_takes_the_projected_rotation(machines: tuple[Machine, ...])
         axes = machine.draw(COUNT, np.random.default_rng(7))
         positions, rotations = machine.closure.poses(axes)
         directions = random_rotations(COUNT, 8)[:, :, 2]
-        tilted = np.array([swing(r[:, 2], d) @ r for r, d in zip(rotations, directions, strict=True)])
+        tilted = swings(rotations[:, :, 2], directions) @ rotations
         configurations = machine.robot.forward_batch(axes)[2]
         found, statuses = machine.robot.inverse_batch(positions, tilted, configurations, axes)
         assert (statuses == Status.OK).all()

@@ -182,9 +182,7 @@ def _inverse(exact: Exact, robot: softkin.Mechanism, axes: list[float], controll
     inputs |= {f"r{i + 1}{k + 1}": Number(v) for i, row in enumerate(frame.rotation) for k, v in enumerate(row)}
     exactly = {j.reference.name: Number(v) for j, v in zip(mechanism.joints, axes, strict=True)}
     exactly |= {j.turn.name: Number(0) for j in mechanism.joints}
-    exactly |= {
-        f"sigma_{b.name}": Number(3 - 2 * byte) for b, byte in zip(mechanism.branches, configuration, strict=False)
-    }
+    exactly |= {f"sigma_{b.name}": Number(3 - 2 * k) for b, k in zip(mechanism.branches, configuration, strict=False)}
     found = exact.at("branch", inputs, exactly)
     if found is None:
         return False

@@ -55,16 +55,10 @@ def test_three_axis_scara_of_linuxcnc() -> None:
 def test_trunnions_of_linuxcnc(tilt: str, axes: tuple[float, ...], position: tuple[float, ...]) -> None:
     """Its offsets are pivots the other way round, and zeros of slides; its z is that of the tip with the tool added."""
     if tilt == "A":
-        tool, robot = (
-            75.0,
-            softkin.TableTableAC(pivot_y=20.0, pivot_z=30.0, tool_length=75.0, offset_y=-20.0, offset_z=-30.0),
-        )
+        robot = softkin.TableTableAC(pivot_y=20.0, pivot_z=30.0, tool_length=75.0, offset_y=-20.0, offset_z=-30.0)
     else:
-        tool, robot = (
-            90.0,
-            softkin.TableTableBC(pivot_x=-25.0, pivot_z=40.0, tool_length=90.0, offset_x=25.0, offset_z=-40.0),
-        )
-    tip = (*position[:2], position[2] - tool)
+        robot = softkin.TableTableBC(pivot_x=-25.0, pivot_z=40.0, tool_length=90.0, offset_x=25.0, offset_z=-40.0)
+    tip = (*position[:2], position[2] - robot.parameters["tool_length"])
     frame, configuration = robot.forward(axes)
     assert frame.position == pytest.approx(tip, abs=1e-8)
     assert robot.inverse((tip, frame.rotation), configuration, axes) == pytest.approx(axes, abs=1e-7)
@@ -100,9 +94,8 @@ def test_the_period_of_a4_moves_a3() -> None:
 
 
 def test_the_zero_pose_is_stretched_along_x() -> None:
-    frame, configuration = softkin.Scara4ZCcoupledType1(
-        link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0
-    ).forward((0,) * 4)
+    robot = softkin.Scara4ZCcoupledType1(link_length_1=325.0, link_length_2=225.0, pitch_zc=20.0)
+    frame, configuration = robot.forward((0,) * 4)
     assert frame == ((550.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     assert configuration == (3, 1, 1, 1)
 

@@ -5,7 +5,6 @@ import pytest
 import softkin
 from softkin import Status
 
-from derive.description.mechanism import Mechanism
 from tests.catalogue.both_ways import inverse
 from tests.catalogue.closure import Array
 from tests.catalogue.loci import Locus, loci
@@ -77,16 +76,6 @@ def test_a_singular_pose_is_an_answer(machines: tuple[Machine, ...]) -> None:
         assert by_configuration[[0, -2, -1]].all()  # as reported, and the two that leave every branch open
 
 
-def test_regular_poses_are_met_to_rounding(machines: tuple[Machine, ...]) -> None:
-    for machine in machines:
-        axes = machine.draw(2000, np.random.default_rng(4))
-        frames = machine.closure.poses(axes)
-        found, _ = machine.robot.inverse_batch(
-            *frames, machine.robot.forward_batch(axes)[2], held_at(machine.robot, axes)
-        )
-        assert machine.miss(found, *frames).max() < REGULAR
-
-
 def test_singular_is_what_is_nearer_than_the_threshold(machines: tuple[Machine, ...]) -> None:
     """1e-3 of the margin itself; the margin of a branch is its indicator."""
     for machine in machines:
@@ -113,21 +102,6 @@ def scaled_indicator(machine: Machine, locus: Locus, axes: Array) -> Array:
     (own,) = machine.closure.indicators(machine.closure.joints(regular))[:, locus.branch]
     unit = own / machine.robot.singularity(regular[0]).margins[branch.margin]
     return machine.closure.indicators(machine.closure.joints(axes))[:, locus.branch] / unit
-
-
-def test_garbage_is_singular_and_nothing_else_without_margins(
-    mechanism: Mechanism, machines: tuple[Machine, ...]
-) -> None:
-    """Garbage in axis values is singular, with margins NaN; a mechanism without singularities has no margins."""
-    robot = machines[1].robot
-    for value in (float("nan"), float("inf"), 1e300):
-        axes = [value] * len(mechanism.joints)
-        singularity = robot.singularity(axes)
-        assert singularity.is_singular
-        assert set(singularity.margins) == set(robot.MARGINS)
-        assert all(np.isnan(m) for m in singularity.margins.values())
-    if not loci(machines[1]):
-        assert robot.MARGINS == ()
 
 
 def free_axes(locus: Locus) -> list[int]:
@@ -170,9 +144,7 @@ def test_a_free_axis_stays_at_the_reference(machines: tuple[Machine, ...]) -> No
 
 @pytest.mark.long("Pos_RRR")
 def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[Machine, ...]) -> None:
-    """At a self-motion some axis stays at its reference, or as near to it as the rest can be reached; else nothing
-    moves.
-    """
+    """At a self-motion some axis stays at its reference, or as near as the rest can be reached; else nothing moves."""
     free = 0
     for machine in machines[:5:2]:
         if not machine.is_spatial or machine.robot.BRANCHES == 0:
@@ -196,10 +168,8 @@ def test_the_reference_decides_where_something_is_free_in_space(machines: tuple[
             apart = machine.closure.joints(found) - machine.closure.joints(there)
             turns = np.where(machine.closure.angles, 2 * np.pi * np.round(apart / (2 * np.pi)), 0.0)
             assert np.abs(apart - turns)[~moves][:, machine.closure.angles].max(initial=0.0) < 1e-5
-    expected = any(
-        m.closure.follows_rotation or m.label == "plain" for m in machines if m.is_spatial and m.robot.BRANCHES
-    )
-    assert bool(free) == expected
+    spatial = [m for m in machines if m.is_spatial and m.robot.BRANCHES]
+    assert bool(free) == any(m.closure.follows_rotation or m.label == "plain" for m in spatial)
 
 
 def test_a_free_polar_angle_stays_on_its_half_circle() -> None:

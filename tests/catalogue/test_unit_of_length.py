@@ -70,9 +70,7 @@ def axes_of(mechanism: Mechanism, robot: softkin.Mechanism, scale: float) -> Arr
 @pytest.mark.long("Ac6")
 @pytest.mark.parametrize(("described", "unit"), CASES)
 def test_only_lengths_change_with_the_unit(described: Mechanism, unit: float) -> None:
-    """Margins, configurations, statuses and slots are the same; positions, slides and the Jacobian change as they
-    should.
-    """
+    """Margins, bytes, statuses and slots are the same; positions, slides and the Jacobian change as they should."""
     given = given_to(described)
     robot = softkin.catalogue()[described.name](**given)
     unit = allowed(robot, given, unit)

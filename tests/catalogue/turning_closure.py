@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, Mechanism, Turning
 from derive.ir.constants import DEGREE
 from tests.catalogue.closure import POSITION, Array, Closure, Formula, derivative
+from tests.orthonormal import turned
 
 SHIFT, TURN = 0.2, 0.35
 """The largest distance of poses from home, in reaches and radians."""
@@ -44,7 +45,7 @@ class TurningClosure(Closure):
         self.home_position[self.task] = home[:width]
         self.home_rotation = np.eye(3)
         for axis, angle in zip(self.axes_of_turn, home[width:], strict=True):
-            self.home_rotation = _about(axis, np.array([angle]))[0] @ self.home_rotation
+            self.home_rotation = turned(axis, np.array([angle]))[0] @ self.home_rotation
         told = [f"home_{b.name}_{b.names[1]}" for b in mechanism.branches]
         self._at_home = np.array([-1.0 if parameters.get(flag) else 1.0 for flag in told])
         points = [*self._ends()[0], *self._ends()[1]]
@@ -151,21 +152,19 @@ class TurningClosure(Closure):
             left, _, right = np.linalg.svd(rotations)
             return self._twisted(np.asarray(left @ right))
         along, across = rotations[:, 0, 0] + rotations[:, 1, 1], rotations[:, 1, 0] - rotations[:, 0, 1]
-        return _about(2, np.arctan2(across, along))
+        return turned(2, np.arctan2(across, along))
 
     def _twisted(self, rotations: Array) -> Array:
-        """The rotations turned about the tool until the plane of a platform that only turns holds: a cos u + b sin u +
-        c = 0. Of its two roots the machine has the one where the plane's slope has the sign of that at home.
-        """
+        """The rotations turned about the tool until the plane holds, its slope with the sign at home."""
         if not self._fixed:
             return rotations
         assert not self.task and len(self._fixed) == 1
-        ahead, across, back = (self._off(rotations @ _about(2, np.full(len(rotations), u))) for u in QUARTERS)
+        ahead, across, back = (self._off(rotations @ turned(2, np.full(len(rotations), u))) for u in QUARTERS)
         middle = (ahead + back) / 2.0
         a, b = ahead - middle, across - middle
-        slope = self._off(self.home_rotation @ _about(2, np.array([np.pi / 2.0])))
+        slope = self._off(self.home_rotation @ turned(2, np.array([np.pi / 2.0])))
         swing = np.arccos(np.clip(-middle / np.hypot(a, b), -1.0, 1.0)) * -np.sign(slope)
-        return np.asarray(rotations @ _about(2, np.arctan2(b, a) + swing))
+        return np.asarray(rotations @ turned(2, np.arctan2(b, a) + swing))
 
     def _off(self, rotations: Array) -> Array:
         """How far the fixed plane is missed."""
@@ -219,7 +218,7 @@ class TurningClosure(Closure):
     def _move(self, positions: Array, rotations: Array, twist: Array) -> None:
         positions[:, self.task] += twist[:, : len(self.task)]
         for k, axis in enumerate(self.axes_of_turn):
-            rotations[:] = _about(axis, twist[:, len(self.task) + k]) @ rotations
+            rotations[:] = turned(axis, twist[:, len(self.task) + k]) @ rotations
 
     def _ends(self) -> tuple[Array, Array]:
         ends = [[*r.plate, *[sp.Integer(0)] * (3 - len(r.plate))] for r in self.mechanism.rods]
@@ -252,16 +251,6 @@ def _limited(step: Array, width: int, reach: float) -> Array:
     """A step of at most half the reach and half a radian."""
     sizes = np.abs(step) / np.where(np.arange(step.shape[1]) < width, 0.5 * reach, 0.5)
     return np.asarray(step / np.maximum(1.0, sizes.max(axis=1))[:, None])
-
-
-def _about(axis: int, angle: Array) -> Array:
-    matrix = np.zeros((len(angle), 3, 3), dtype=np.asarray(angle).dtype)
-    first, second = (axis + 1) % 3, (axis + 2) % 3
-    matrix[:, axis, axis] = 1.0
-    matrix[:, first, first] = matrix[:, second, second] = np.cos(angle)
-    matrix[:, second, first] = np.sin(angle)
-    matrix[:, first, second] = -np.sin(angle)
-    return matrix
 
 
 @cache

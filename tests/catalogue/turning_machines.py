@@ -31,9 +31,7 @@ class TurningMachine(Machine):
     closure: TurningClosure
 
     def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Axis values of regular poses around home, over several turns where an axis has them and `farthest` (degrees)
-        allows.
-        """
+        """Axis values of regular poses around home, over several turns where `farthest` (degrees) allows."""
         turning = np.array([j.multi_turn for j in self.mechanism.joints])
         pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
         chosen = pool[rng.integers(len(pool), size=count)]
@@ -64,9 +62,7 @@ class TurningMachine(Machine):
         return np.asarray((equations / self.size(axes)[:, None]).max(axis=1))
 
     def leads_back(self, axes: Array) -> NDArray[np.bool_]:
-        """Where forward kinematics leads from a solution back to a pose around home: where the platform at home, with
-        these joints, is well in the mode of the machine. From the other side Newton's method does not come.
-        """
+        """Where forward leads back from a solution: where the platform at home is well in the mode of the machine."""
         at_home = (
             np.tile(self.closure.home_position, (len(axes), 1)),
             np.tile(self.closure.home_rotation, (len(axes), 1, 1)),

@@ -1,8 +1,4 @@
-"""Questions and what the package answers, as plain data: a question is a dictionary, and so is an answer.
-
-A call that raises answers with its status and its message, in which numbers are hidden: they are compared where they
-are axes.
-"""
+"""Questions and what the package answers, as plain data; of a refusal the status, and the message without numbers."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -84,9 +80,7 @@ def _forward(one: Robot, question: Question) -> Answer:
 
 
 def _same(rows: Any, others: Any) -> bool:
-    return all(
-        abs(a - b) <= 1e-12 for row, other in zip(rows, others, strict=True) for a, b in zip(row, other, strict=True)
-    )
+    return all(abs(a - b) <= 1e-12 for r, o in zip(rows, others, strict=True) for a, b in zip(r, o, strict=True))
 
 
 def _inverse(one: Robot, question: Question) -> Answer:

@@ -20,8 +20,7 @@ SINGULAR = 1e-4
 COINCIDENT = 1e-9
 """Branches with a margin below this may be written as coinciding or not."""
 ROUNDED = 1e-7
-"""What a singular pose makes of rounding: what it lacks is known to this share, and a margin below may have the other
-sign."""
+"""What a singular pose lacks is known to this share, and a margin below may have the other sign."""
 Ask = Callable[[Robot, Question], Answer]
 
 

@@ -71,9 +71,7 @@ def _named(one: Robot, rows: list[Row]) -> Iterator[str]:
     configurations = np.array([c for _, c, _ in named]).reshape(len(named), bytes_)
     axes, statuses = one.made.inverse_batch(positions, rotations, configurations, references)
     for i, (row, configuration, was) in enumerate(named):
-        yield from _one(
-            one, f"inverse_batch of {one.made!r}, {configuration}: asked {row[0]}", was, axes[i], statuses[i]
-        )
+        yield from _one(one, f"inverse_batch of {one.made!r}, {configuration}: {row[0]}", was, axes[i], statuses[i])
 
 
 def _one(one: Robot, place: str, old: Answer, axes: Any, status: Any) -> Iterator[str]:

@@ -33,9 +33,7 @@ class Robot:
 
     def changed(self, **parameters: float) -> Robot:
         """The same robot with other parameters of its last part that knows them."""
-        return robot(
-            [part | {"parameters": part["parameters"] | _known(part["name"], parameters)} for part in self.recipe]
-        )
+        return robot([p | {"parameters": p["parameters"] | _known(p["name"], parameters)} for p in self.recipe])
 
 
 def robot(recipe: Recipe) -> Robot:
@@ -46,9 +44,7 @@ def robot(recipe: Recipe) -> Robot:
 
 
 def recipes(name: str) -> Iterator[Recipe]:
-    """The machines of a mechanism (or of a coupling): as it is drawn, special ones, an unequal one with offsets, in
-    metres.
-    """
+    """The machines of a mechanism: as it is drawn, special ones, an unequal one with offsets, in metres."""
     if name in COUPLED:
         yield [{"name": part, "parameters": dict(given)} for part, given in COUPLED[name]]
         return

@@ -120,9 +120,7 @@ def test_a_planted_fault_is_found(name: str, fault: Callable[[Answer], None]) ->
     if name.startswith("Coupled"):
         recording = recording[:1] + recording[-8:]
     parts: list[dict[str, Any]] = recording[:2] + recording[-12:]
-    found = [
-        text for part in parts for text in differences(robot(part["recipe"]), part["asked"], part["answers"], wrong)
-    ]
+    found = [t for part in parts for t in differences(robot(part["recipe"]), part["asked"], part["answers"], wrong)]
     is_asked = name.startswith("Kin") or fault not in (
         permitted,
         turned,

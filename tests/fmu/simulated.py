@@ -121,9 +121,7 @@ def ask(fmu: Fmu, machines: Sequence[Answer]) -> list[Answer]:
 
 
 def asked(fmu: Fmu) -> Callable[[Answer], Answer | None]:
-    """A question of the corpus as an FMU can be asked: with numbers alone, one branch at a time, without a start. Each
-    second is asked: the C behind it is asked them all.
-    """
+    """A question of the corpus as an FMU can be asked: numbers, one branch, no start; each second is asked."""
     places = count()
     axes, size = len(fmu.names("axes")), len(fmu.names("configuration"))
     starts = [int(one.start) for one in fmu.description.modelVariables if one.name.startswith("configuration.")]

@@ -1,4 +1,4 @@
-"""Forward kinematics of a description that was written, and of robot files by independent readers."""
+"""Forward is that of the pose, but for what the import has moved. away, turned: what rounding may add."""
 
 from collections.abc import Callable, Mapping
 from functools import cache

@@ -30,9 +30,7 @@ Call = list[Any]
 
 
 def calls_of(question: Answer, rows: int) -> list[Call]:
-    """The calls that a question of the corpus asks for; none where it asks for what JavaScript has not. rows: of the
-    Jacobian.
-    """
+    """The calls that a question of the corpus asks for; none for what JavaScript has not. rows: of the Jacobian."""
     if question["call"] == "forward":
         start = [_frame(question["start"])] if "start" in question else []
         axes = question["axes"]
@@ -85,7 +83,6 @@ class Comparison:
         self.known = _answers(json.dumps(self.robot.recipe))
 
     def compare(self, question: Answer, answers: Iterator[Answer]) -> None:
-        """Compare the answers to the calls of a question."""
         before = len(self.found)
         if question["call"] == "forward":
             self._forward(question, next(answers))
@@ -309,7 +306,6 @@ def compared(
 
 
 def differences(every: list[Comparison]) -> list[str]:
-    """All differences, in words."""
     return [text for one in every for text in one.found]
 
 

@@ -29,5 +29,4 @@ def written(part: Part, change: Callable[[str, str], str] = lambda path, text: t
 
 
 def files_of(part: Part) -> Mapping[str, str]:
-    """All files of one machine."""
     return package.files([part])

@@ -40,12 +40,8 @@ def test_every_call_ends_in_a_status(name: str) -> None:
     """Results are there where the status is 0, and a reason where it is not."""
     axes = len(ask(module_of(name), [])["description"]["axes"])
     near = [0.0] * axes
-    calls = [
-        [call, value] for call in ("forward", "jacobian", "singularity", "limited", "scene") for value in NO_NUMBERS
-    ]
-    calls += [
-        [call, [value] * axes] for call in ("forward", "jacobian", "singularity", "scene") for value in NO_NUMBERS
-    ]
+    calls = [[call, v] for call in ("forward", "jacobian", "singularity", "limited", "scene") for v in NO_NUMBERS]
+    calls += [[call, [v] * axes] for call in ("forward", "jacobian", "singularity", "scene") for v in NO_NUMBERS]
     calls += [[call, near, frame] for call in ("forward", "scene") for frame in FRAMES]
     calls += [["inverse", frame, None, near] for frame in FRAMES] + [["inverseAll", frame, near] for frame in FRAMES]
     calls += [["inverse", FRAME, given, near] for given in BYTES]

@@ -70,9 +70,7 @@ def test_bodies_follow_the_machine(name: str) -> None:
 
 def _own_points(body: dict[str, Any]) -> list[float]:
     """The distances of the points of a body from the origin of its frame."""
-    return [
-        float(np.linalg.norm(np.subtract(point, body["frame"]["position"]))) for line in body["lines"] for point in line
-    ]
+    return [float(np.linalg.norm(np.subtract(p, body["frame"]["position"]))) for line in body["lines"] for p in line]
 
 
 @pytest.mark.broad

@@ -147,7 +147,6 @@ def sections_of(way: Way) -> dict[str, dict[str, Any]]:
 
 
 def move(start: Sequence[float], end: Sequence[float]) -> Any:
-    """A move of the toolhead."""
     apart = [b - a for a, b in zip(start, end, strict=True)]
     length = sum(a * a for a in apart) ** 0.5
     return SimpleNamespace(
@@ -158,7 +157,6 @@ def move(start: Sequence[float], end: Sequence[float]) -> Any:
 
 @cache
 def way(name: str) -> Way:
-    """A way of a machine."""
     return way_of(named(name))
 
 

@@ -47,7 +47,6 @@ class Language:
         return self.written(part)
 
     def compared(self, program: Any, recording: list[Answer]) -> list[comparison.Comparison]:
-        """The machines of a recording, each compared."""
         return comparison.compared(recording, lambda machines: self.ask(program, machines), self.asked(program))
 
 

@@ -1,5 +1,4 @@
-"""`softkin derive … --language` writes the folder of that language, the same every time, and leaves what stands beside
-it."""
+"""`softkin derive … --language` writes the folder of that language, and leaves what stands beside it."""
 
 from pathlib import Path
 

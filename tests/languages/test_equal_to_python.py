@@ -1,5 +1,4 @@
-"""Every mechanism answers in C, in JavaScript and as an FMU as in Python: at every pose of the corpus, singular, beyond
-limits, or garbage."""
+"""Every mechanism answers in C, in JavaScript and as an FMU as in Python, at every pose of the corpus."""
 
 import pytest
 

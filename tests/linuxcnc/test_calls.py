@@ -270,9 +270,7 @@ def test_rotary_axes_are_letters(name: str) -> None:
     letters = [letter for letter in machine.words.own if letter]
     assert len(letters) == 2 and set(letters) <= set("ABC")
     for case in range(60):
-        turns = {
-            letter: rng.choice([0.0, 1e-12, 90.0, -180.0, 400.0, rng.uniform(-500.0, 500.0)]) for letter in letters
-        }
+        turns = {one: rng.choice([0.0, 1e-12, 90.0, -180.0, 400.0, rng.uniform(-500.0, 500.0)]) for one in letters}
         pose = dict.fromkeys(LETTERS, 0.0) | {letter: rng.uniform(-200.0, 200.0) for letter in "XYZ"} | turns
         joints = machine.module.inverse(pose, [1.0, 2.0, 3.0, 50.0, 60.0], case)
         assert joints is not None

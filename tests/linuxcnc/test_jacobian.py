@@ -1,5 +1,4 @@
-"""Rates of joints by rates of the pose: by perturbed joints, and by differences of the inverse, neither of which is the
-formula."""
+"""Rates of joints by rates of the pose: by perturbed joints, and by differences of the inverse."""
 
 from __future__ import annotations
 
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.linuxcnc.machine import NAMES, Array, Axes, Machine, machine_of, regular
-from tests.linuxcnc.module import LETTERS, MOST_JOINTS, Pose
+from tests.linuxcnc.module import LETTERS, MOST_JOINTS, Module, Pose
 from tests.mechanisms import named
 
 STEP = 1e-4
@@ -37,27 +36,27 @@ def test_rates(name: str) -> None:
         assert not rows[:, unused].any()
         rows = rows[: len(axes)]
         largest = 1.0 + np.abs(rows).max()
-        assert np.allclose(rows @ _by_joints(machine, axes, pose), np.eye(len(axes)), atol=1e-6 * largest)
-        for k, column in _by_letters(machine, axes, pose, flags):
+        assert np.allclose(rows @ by_joints(machine.module, axes, pose), np.eye(len(axes)), atol=1e-6 * largest)
+        for k, column in by_letters(machine, axes, pose, flags):
             assert np.allclose(rows[:, k], column, atol=1e-5 * largest**2), LETTERS[k]
             count += 1
     assert count >= len(machine.words.letters)
 
 
-def _by_joints(machine: Machine, axes: Axes, pose: Pose) -> Array:
+def by_joints(module: Module, axes: Axes, pose: Pose) -> Array:
     """Rates of the pose by those of the joints: differences of forward kinematics."""
     columns = []
     for i in range(len(axes)):
         ends = []
         for step in (-STEP, STEP):
-            moved = machine.module.forward([v + (step if i == j else 0.0) for j, v in enumerate(axes)], pose)
+            moved = module.forward([v + (step if i == j else 0.0) for j, v in enumerate(axes)], pose)
             assert moved is not None
             ends.append([moved[letter] for letter in LETTERS])
         columns.append((np.array(ends[1]) - np.array(ends[0])) / (2.0 * STEP))
     return np.array(columns).T
 
 
-def _by_letters(machine: Machine, axes: Axes, pose: Pose, flags: int) -> list[tuple[int, Array]]:
+def by_letters(machine: Machine, axes: Axes, pose: Pose, flags: int | None = None) -> list[tuple[int, Array]]:
     """Rates of the joints by those of each letter of the machine that can be moved there."""
     found = []
     for k, letter in enumerate(LETTERS):

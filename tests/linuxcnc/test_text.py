@@ -28,9 +28,7 @@ HEADERS = {
 @pytest.mark.broad
 @pytest.mark.parametrize("name", NAMES)
 def test_one_source(name: str) -> None:
-    """Nothing is allocated or printed, no header stands after the code of LinuxCNC that would be read before it, and
-    no line is wider than a page.
-    """
+    """Nothing is allocated or printed, no header stands after the code of LinuxCNC, no line is wider than a page."""
     ((path, text),) = part_of(name)["files"].items()
     assert path == f"{part_of(name)['index']['module']}.c" and len(path) <= 35
     wide = [line for line in text.splitlines() if len(line) > 110]

@@ -14,6 +14,7 @@ from derive.emit.linuxcnc.tool import tool_of
 from tests.corpus.dimensions import DIMENSIONS
 from tests.linuxcnc.machine import NAMES, Array, about, answered, machine_of, regular
 from tests.linuxcnc.module import LETTERS, STUBS, Module
+from tests.linuxcnc.test_jacobian import by_letters
 from tests.mechanisms import kinematics_of, named
 
 LONGER = 17.5
@@ -36,10 +37,8 @@ LENGTHS = {
 def test_length(name: str) -> None:
     """With the pin, joints are those of a machine with a longer tool, and LinuxCNC's Z is the tip's and the length."""
     assert _length(name) == LENGTHS[name]
-    machine, count = machine_of(name, STUBS[len(name) % 2]), 0
-    longer = softkin.catalogue()[name](
-        **DIMENSIONS[name] | {LENGTHS[name]: DIMENSIONS[name].get(LENGTHS[name], 0.0) + LONGER}
-    )
+    machine, count, own = machine_of(name, STUBS[len(name) % 2]), 0, LENGTHS[name]
+    longer = softkin.catalogue()[name](**DIMENSIONS[name] | {own: DIMENSIONS[name].get(own, 0.0) + LONGER})
     for axes, _ in islice(regular(machine, 0.1), 6):
         machine.module.set(tool_offset=LONGER)
         pose = machine.module.forward(axes)
@@ -47,14 +46,10 @@ def test_length(name: str) -> None:
         assert [pose[i] for i in "XYZ"] == pytest.approx(np.add(longer.forward(axes)[0].position, (0, 0, LONGER)))
         found = machine.module.inverse(pose, axes)
         assert found == pytest.approx(axes, abs=1e-7)
-        rates, step = machine.module.jacobian(axes, pose), 1e-4
+        rates = machine.module.jacobian(axes, pose)
         assert rates is not None
-        for letter in machine.words.letters:
-            ends = [machine.module.inverse(pose | {letter: pose[letter] + s}, axes) for s in (step, -step)]
-            if ends[0] is not None and ends[1] is not None:
-                column = (np.array(ends[0]) - np.array(ends[1])) / (2.0 * step)
-                given = [row[LETTERS.index(letter)] for row in rates[: len(axes)]]
-                assert given == pytest.approx(column, abs=1e-3), letter
+        for k, column in by_letters(machine, axes, pose):
+            assert np.array(rates)[: len(axes), k] == pytest.approx(column, abs=1e-3), LETTERS[k]
         count += 1
         machine.module.set(tool_offset=0.0)
     assert count >= 3
@@ -85,9 +80,7 @@ def _frame(module: Module, which: str, joints: list[float]) -> Array | None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_frames(name: str) -> None:
-    """The tool seen from the work is the frame of Python, or that turned about x by half a turn where z leads away from
-    the holder; without a table the work stays.
-    """
+    """The frame of Python, or that turned half a turn about x where z leads away from the holder; the work's too."""
     machine, count = machine_of(name), 0
     kin = kinematics_of(named(name))
     for axes, frame, _ in islice(answered(machine), 12):
@@ -115,9 +108,7 @@ def test_frames(name: str) -> None:
     ],
 )
 def test_five_axes(name: str, tool: Array, work: Array) -> None:
-    """What turns the tool turns its frame, what turns the work turns that of the work; with axes that are counted from
-    elsewhere, too.
-    """
+    """What turns the tool turns its frame, what turns the work that of the work; with counts from elsewhere, too."""
     machine = machine_of(name)
     letters = [joint.name for joint in named(name).joints]
     machine.module.set(**{f"offset_{letter.lower()}": 7.0 for letter in letters[3:]})

@@ -27,10 +27,7 @@ def in_both(mechanism: Mechanism, offsets: Mapping[str, float]) -> tuple[Built, 
 def forward_in_both(
     controller: Controller, robot: softkin.Mechanism, axes: Sequence[float], size: float, turned: float = 1e-12
 ) -> Answer | None:
-    """The frame and the configuration at axis values; None where both refuse.
-
-    size: that of the machine. turned: how far entries of the rotations may be apart.
-    """
+    """The frame and the configuration; None where both refuse. turned: how far entries of rotations may be apart."""
     status, answer = controller.forward(axes)
     try:
         frame, configuration = robot.forward(axes)

@@ -175,8 +175,7 @@ ANGLES_AS_NUMBERS = _chain(
     ),
     POSE,
 )
-"""Six axes by a table with angles as numbers, which is searched: a machine with branches that the compiler names by the
-joints and by angles of its own, which count in degrees."""
+"""It is searched: the compiler names its branches by the joints and by angles of its own, in degrees."""
 
 BY_TABLE = {"six axes by a table with angles as numbers": ANGLES_AS_NUMBERS}
 

@@ -29,9 +29,7 @@ from tests.machines.task_machines import TASK_MACHINES, UNNAMED
 from tests.machines.textbook import textbook
 
 X, Y, Z, R = (linear(name, f"slide {name}") for name in ("X", "Y", "Z", "R"))
-A, B, C, A1, A2, A3, A4, A5, A6, E1 = (
-    rotary(name, f"turn {name}") for name in ("A", "B", "C", "A1", "A2", "A3", "A4", "A5", "A6", "E1")
-)
+A, B, C, A1, A2, A3, A4, A5, A6, E1 = (rotary(n, f"turn {n}") for n in "A B C A1 A2 A3 A4 A5 A6 E1".split())
 PIVOT_X, PIVOT_Y, PIVOT_Z = (
     distance(f"pivot_{c}", f"pivot, {c}", nominal=v) for c, v in zip("xyz", (20, 30, 80), strict=True)
 )
@@ -40,6 +38,7 @@ HEIGHT = distance("height", "height of the shoulder", nominal=200.0)
 L1, L2, L3, L4 = (length(f"link_{k}", f"link {k}", nominal=v) for k, v in enumerate((300.0, 400.0, 350.0, 120.0), 1))
 L5 = length("link_5", "link 5", nominal=30.0)
 LEAN = angle("lean", "lean of one axis against another", nominal=50.0)
+INCLINED = radians(LEAN)
 SLIDES = Tx(X) * Ty(Y) * Tz(Z)
 STOCK = (
     X, Y, Z, R, A, B, C, A1, A2, A3, A4, A5, PIVOT_X, PIVOT_Y, PIVOT_Z, BESIDE, HEIGHT, L1, L2, L3, L4, L5, LEAN,
@@ -47,7 +46,8 @@ STOCK = (
 _machine = partial(textbook, STOCK)
 
 DIRECTION, TURNED = Task("xyz", Turning.DIRECTION), Task("xyz", Turning.ABOUT_Z)
-POSE = Task("xyz", Turning.FULL)
+POSE, PLACE, FLAT = Task("xyz", Turning.FULL), Task("xyz"), Task("xy", Turning.ABOUT_Z)
+LEFT = branch("slide", Y, left=+1, right=-1)
 ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
 
@@ -64,7 +64,7 @@ THREE_LENGTHS = {
     ),
     "table with an oblique axis": _machine(
         "Nutating",
-        Rz(C) * Tz(PIVOT_Z) * Rx(radians(LEAN)) * Rz(B) * Rx(-radians(LEAN)) * SLIDES,
+        Rz(C) * Tz(PIVOT_Z) * Rx(INCLINED) * Rz(B) * Rx(-INCLINED) * SLIDES,
         DIRECTION,
         _tilt(B),
         joints=(X, Y, Z, B, C),
@@ -79,18 +79,18 @@ THREE_LENGTHS = {
 
 SQUARES_WITH_LENGTHS = {
     "telescope beside its column": _machine(
-        "BoomTurn", Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4), Task("xy", Turning.ABOUT_Z), positive=(R,)
+        "BoomTurn", Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4), FLAT, positive=(R,)
     ),
     "telescope that may turn inside out": _machine(
         "BoomBoth",
         Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
-        Task("xy", Turning.ABOUT_Z),
+        FLAT,
         (branch("boom", R, ahead=+1, behind=-1),),
     ),
     "telescope above its shoulder": _machine(
         "BoomUp",
         Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(BESIDE) * Tx(R),
-        Task("xyz"),
+        PLACE,
         (branch("shoulder", R * cos(A2) + BESIDE * sin(A2), front=+1, back=-1),),
         positive=(R,),
     ),
@@ -98,12 +98,12 @@ SQUARES_WITH_LENGTHS = {
 
 PARAMETERS_DECIDE = {
     "skewed rail": _machine(
-        "Skewed", Tx(X) * Rz(radians(LEAN)) * Ty(Y) * Rz(-radians(LEAN)) * Tz(Z), Task("xyz"), offset_interface=True
+        "Skewed", Tx(X) * Rz(INCLINED) * Ty(Y) * Rz(-INCLINED) * Tz(Z), PLACE, offset_interface=True
     ),
     "rails in a wedge": _machine(
         "Wedge",
-        Ry(radians(LEAN)) * Tx(X) * Ry(-2 * radians(LEAN)) * Tx(Z) * Ry(radians(LEAN)) * Ty(Y),
-        Task("xyz"),
+        Ry(INCLINED) * Tx(X) * Ry(-2 * INCLINED) * Tx(Z) * Ry(INCLINED) * Ty(Y),
+        PLACE,
         joints=(X, Y, Z),
     ),
 }
@@ -112,7 +112,7 @@ ONE_ROOT = {
     "arm whose elbow bends one way": _machine(
         "OneElbow",
         Tz(HEIGHT) * Rz(A1) * Ry(A2) * Tz(L2) * Ry(A3) * Tx(L3),
-        Task("xyz"),
+        PLACE,
         (branch("shoulder", L2 * sin(A2) + L3 * cos(A2 + A3), front=+1, back=-1),),
         positive=(cos(A3),),
     ),
@@ -124,11 +124,9 @@ ONE_ROOT = {
 _SWING = (branch("side", sin(A2), right=+1, left=-1), branch("lean", cos(A2), up=+1, down=-1))
 
 CONSTANT_RADIUS = {
-    "jib that swings on a hoist": _machine(
-        "Jib", Tz(Z) * Rz(A1) * Ry(A2) * Tz(L1), Task("xyz"), _SWING, joints=(A1, A2, Z)
-    ),
+    "jib that swings on a hoist": _machine("Jib", Tz(Z) * Rz(A1) * Ry(A2) * Tz(L1), PLACE, _SWING, joints=(A1, A2, Z)),
     "jib with a number for its length": _machine(
-        "JibNumber", Tz(Z) * Rz(A1) * Ry(A2) * Tz(Integer(300)), Task("xyz"), _SWING, joints=(A1, A2, Z)
+        "JibNumber", Tz(Z) * Rz(A1) * Ry(A2) * Tz(Integer(300)), PLACE, _SWING, joints=(A1, A2, Z)
     ),
 }
 
@@ -159,7 +157,7 @@ OTHERS = {
 
 _ARM_AND_TELESCOPE = (
     Rz(A1) * Tx(L1) * Rz(A2) * Tx(R),
-    Task("xy", Turning.ABOUT_Z),
+    FLAT,
     (branch("arm", cos(A2), ahead=+1, behind=-1),),
 )
 ALONG_A_DIRECTION = {
@@ -196,31 +194,27 @@ ACROSS = {
         _tilt(A),
         joints=(X, Y, A, R, C),
     ),
-    "slide that turns on a slide": _machine(
-        "TurningSlide", Ty(Y) * Rz(C) * Tx(X) * Ty(BESIDE), Task("xy", Turning.ABOUT_Z)
-    ),
+    "slide that turns on a slide": _machine("TurningSlide", Ty(Y) * Rz(C) * Tx(X) * Ty(BESIDE), FLAT),
 }
 
 DISTANCES_ALONE = {
     "slide on a rocker": _machine(
         "RockerSlide",
         Rx(A1) * Ry(A2) * Tx(PIVOT_X) * Tz(BESIDE) * Ty(Y),
-        Task("xyz"),
+        PLACE,
         (
             branch("rocker", BESIDE * cos(A2) - PIVOT_X * sin(A2), ahead=+1, behind=-1),
-            branch("slide", Y, left=+1, right=-1),
+            LEFT,
         ),
     ),
-    "slide on a swivel": _machine(
-        "SwivelSlide", Rz(A1) * Tx(PIVOT_X) * Ty(Y), Task("xy"), (branch("slide", Y, left=+1, right=-1),)
-    ),
+    "slide on a swivel": _machine("SwivelSlide", Rz(A1) * Tx(PIVOT_X) * Ty(Y), Task("xy"), (LEFT,)),
 }
 
 SEEN_FROM_A_KNOWN_FRAME = {
     "arm beside the rail that it turns about": _machine(
         "ShoulderRail",
         Tx(X) * Rx(A1) * Ty(L1) * Rz(A2) * Tz(BESIDE) * Tx(L2),
-        Task("xyz"),
+        PLACE,
         (branch("shoulder", L1 + L2 * sin(A2), front=+1, back=-1), branch("elbow", cos(A2), ahead=+1, behind=-1)),
     ),
     "telescope on a rocker that points the tool": _machine(
@@ -234,8 +228,8 @@ SEEN_FROM_A_KNOWN_FRAME = {
 TURNS_ABOUT_Y = {
     "boom on a carriage": _machine(
         "CarriageBoom",
-        Tx(X) * Ty(Y) * Tz(HEIGHT) * Rz(radians(LEAN)) * Ry(-A1) * Tx(L1) * Ry(pi / 2),
-        Task("xyz"),
+        Tx(X) * Ty(Y) * Tz(HEIGHT) * Rz(INCLINED) * Ry(-A1) * Tx(L1) * Ry(pi / 2),
+        PLACE,
         (branch("boom", cos(A1), forward=+1, backward=-1),),
     )
 }
@@ -252,9 +246,7 @@ SOLUTIONS: Mapping[str, int] = {
     **dict.fromkeys((*CHAINS, *POINTS, "arm in metres with a held turn of its upper arm"), 4),
     **{name: count for count, names in UNNAMED.items() for name in names},
 }
-"""The largest number of solutions: two a branch that a description states, else as a search of the closure from many
-starts finds them.
-"""
+"""The most solutions: two a branch that is stated, else as a search from many starts finds them."""
 COSTLY = (
     "a tool beside", "an inclined tool",
     "an elbow that is held", "arm in metres", "arm of a URDF file", "arm with a wrist that is bent",

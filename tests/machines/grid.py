@@ -16,9 +16,7 @@ _CORNERS, _REGULAR = 240, 0.05
 
 
 def grid(machine: Made) -> Array:
-    """Joints at multiples of a quarter turn and of a length, where every singular pose is, and anywhere; of a loop,
-    anywhere on more than one turn.
-    """
+    """Joints at multiples of a quarter turn and of a length, and anywhere; of a loop, anywhere."""
     rng = np.random.default_rng(4)
     if machine.mechanism.rods:
         return random_axes(machine.robot, MOST, rng, 300.0, machine.reach, machine.closure.offsets)
@@ -31,9 +29,7 @@ def grid(machine: Made) -> Array:
 
 
 def corners(machine: Made) -> Array:
-    """Axis values next to poses where singularities meet: joints are 1e-9 to 0.1 degrees away from multiples of 90
-    degrees, all by the same or each by another power of ten.
-    """
+    """Joints 1e-9 to 0.1 degrees beside multiples of 90 degrees, all by the same or each by another power of ten."""
     rng, angles = np.random.default_rng(9), machine.closure.angles
     shape = (_CORNERS, len(angles))
     away = 10.0 ** rng.uniform(-9.0, -1.0, shape) * rng.choice([-1.0, 1.0], shape)

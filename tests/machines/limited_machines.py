@@ -89,9 +89,7 @@ def limited_machine(kind: str) -> Limited:
     if kind == GIVEN:
         lengths: dict[str, Any] = {"link_length_1": 325.0, "link_length_2": 225.0, "pitch_zc": 20.0}
         ends = {"a1": (-100.0, 90.0), "a2": (20.0, 150.0), "a3": (-50.0, 60.0), "a4": (-300.0, 250.0)}
-        limits = {
-            f"{word}_{k}": v for k, pair in ends.items() for word, v in zip(("lower", "upper"), pair, strict=True)
-        }
+        limits = {f"{end}_{k}": v for k, pair in ends.items() for end, v in zip(("lower", "upper"), pair, strict=True)}
         return _made(named("Kin_Scara4_ZCcoupled_Type1"), lengths | limits, (20.0, 60.0, 5.0, 30.0), None)
     if kind == OWN:
         path = folder / "limited_scara.py"

@@ -91,10 +91,9 @@ def made(name: str) -> Made:
     return Made(mechanism, built, robot, closure, reach)
 
 
+@cache
 def built_of(mechanism: Mechanism) -> Built:
-    """What `derive_one` makes of a mechanism, with every check but without pictures: they prove nothing, and
-    `tests/unit/drawing` looks at them.
-    """
+    """What `derive_one` makes of a mechanism, with every check but without pictures."""
     whole = derive_and_measure(mechanism)
     parts = {language.name: language.part(whole) for language in languages()}
     written = {name: part for name, part in parts.items() if part is not None}
@@ -102,10 +101,7 @@ def built_of(mechanism: Mechanism) -> Built:
 
 
 def imported_class(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:
-    """The class of the generated package: its modules are read beside those of the catalogue.
-
-    They are not laid out, which changes no statement, and takes a process for every machine.
-    """
+    """The class of the generated package, whose modules, not laid out, are read beside those of the catalogue."""
     texts = {path: text for path, text in built.parts["python"]["files"].items() if path.startswith("softkin/")}
     for path, text in texts.items():
         ast.parse(text, path)

@@ -47,9 +47,7 @@ class Solved:
 
 @dataclass(frozen=True)
 class Platform:
-    """One machine: the inverse of `robot` refuses what forward kinematics does not find again, that of `open_robot`
-    does not.
-    """
+    """One machine: `robot` refuses what forward kinematics does not find again, `open_robot` does not."""
 
     mechanism: Mechanism
     robot: softkin.Mechanism

@@ -101,6 +101,4 @@ SEARCHED = {
     **POINTS,
     **POINTING,
 }
-"""One without any branch stated, one with a branch that no step of the trial decides; arms that turn a point, or point
-a tool.
-"""
+"""One without any branch stated, one with a branch that no step decides; arms that turn a point, or point a tool."""

@@ -11,22 +11,21 @@ import softkin
 
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
-from derive.emit.c import package as in_c
-from derive.emit.javascript import package as in_javascript
-from tests.c.machine import ask as ask_c
-from tests.c.programs import compiled
 from tests.catalogue.refusals import status_of
-from tests.javascript.modules import written
-from tests.javascript.node import ask as ask_javascript
-from tests.machines.made import Made, made
+from tests.languages.language import LANGUAGES, Language
+from tests.machines.made import Array, Made, made
 from tests.machines.odd_names import ODD
-from tests.mechanisms import kinematics_of
+from tests.text.controller import OK
 
 Answer = dict[str, Any]
 Forward = Callable[[Mechanism, Sequence[list[float]]], tuple[list[str], list[Answer]]]
 """A mechanism and axis values → the names of its parameters, and forward kinematics with nominal dimensions."""
 HELD = "seven axes beside each other, the first held"
 BASE = "palletizer with both motors at the base"
+
+
+EVERY_OTHER = pytest.mark.parametrize("language", (None, *LANGUAGES), ids=lambda one: str(one or "ST"))
+"""The languages that answer as Python does: None is Structured Text, whose block a controller calls."""
 
 
 @dataclass(frozen=True)
@@ -68,19 +67,8 @@ def spoken(name: str) -> Spoken:
     return Spoken(machine, poses, calls)
 
 
-def asked_in(language: str, mechanism: Mechanism, asked: Sequence[Mapping[str, Any]]) -> list[Answer]:
-    """What a machine answers in C or JavaScript to machines with their calls."""
-    kinematics = kinematics_of(mechanism)
-    if language == "c":
-        return list(ask_c(compiled(in_c.part(kinematics)), list(asked)))
-    return list(ask_javascript(written(in_javascript.part(kinematics)), list(asked))["answers"])
-
-
 def confirm_natural_names(name: str, forward: Forward, words: Mapping[str, str]) -> None:
-    """A machine whose inputs are called as no variable can be moves as its twin with plain names.
-
-    words: what the language calls an input otherwise than Python, by the name in the description.
-    """
+    """A machine with odd names moves as its twin. words: of the language, by the name in the description."""
     axes = [[10.0 * k, 20.0 - 7.0 * k, 5.0 + 3.0 * k, 4.0 * k] for k in range(6)]
     (names, odd), (_, twin) = (forward(validate(m), axes) for m in (ODD[name].mechanism(), ODD[name].twin()))
     assert [answer["status"] for answer in odd] == [answer["status"] for answer in twin]
@@ -90,3 +78,21 @@ def confirm_natural_names(name: str, forward: Forward, words: Mapping[str, str])
     assert odd[0]["status"] == 0
     stated = [p.given_name for p in ODD[name].mechanism().parameters]
     assert names[: len(stated)] == [words.get(n) or ODD[name].python.get(n, n) for n in stated]
+
+
+def answered(language: Language | None, machine: Made, robot: softkin.Mechanism, axes: Array, near: Array) -> Array:
+    """Axes that the inverse answers in a language, none of them refused, at the poses of other axes of a robot of the
+    kind of a machine. near: references.
+    """
+    asked = [(*robot.forward(row), reference) for row, reference in zip(axes.tolist(), near.tolist(), strict=True)]
+    if language is None:
+        block = machine.controller()
+        assert block.initialise(robot.parameters) == OK
+        answers = [block.inverse(f.position, f.rotation, c, reference) for f, c, reference in asked]
+    else:
+        calls = [["inverse", {"position": f.position, "rotation": f.rotation}, c, near] for f, c, near in asked]
+        given = {"parameters": dict(robot.parameters), "calls": calls}
+        (told,) = language.ask(language.of(machine.mechanism), [given])
+        answers = [(one["status"] or OK, one.get("axes")) for one in told["found"]]
+    assert [row for row, (status, _) in zip(axes.tolist(), answers, strict=True) if status != OK] == []
+    return np.array([found[: axes.shape[1]] for _, found in answers])

@@ -39,9 +39,7 @@ def regular(name: str) -> Array:
 
 
 def counted(machine: Made, axes: Array) -> int:
-    """The number of solutions at a pose: of every leg the roots of its equation around its joint, or along it; of all
-    combinations those in the assembly mode of the machine.
-    """
+    """Solutions at a pose: combinations of roots of the equation of every leg that are in the mode of the machine."""
     closure, (joints,) = closure_of(machine), machine.closure.joints(axes[None])
     positions, rotations = closure.poses(axes[None])
     roots = []
@@ -111,9 +109,7 @@ def test_the_jacobian_is_that_of_the_closure(name: str) -> None:
 
 @pytest.mark.parametrize("name", [n for n, m in CARRIED.items() if m.offset_interface])
 def test_a_point_off_the_flange_holds_the_tool(name: str) -> None:
-    """With the reference at the axes the point leads back to them, in both languages: C stays, and the loop shifts the
-    flange.
-    """
+    """The point leads back to the axes, in both languages: C stays, and the loop shifts the flange."""
     machine = made(name)
     controller = machine.controller()
     offset = np.array([0.04, -0.03, 0.0]) * machine.reach

@@ -1,90 +1,57 @@
 """Where solutions meet and where two lengths vanish together: no pose is lost, and every answer meets its pose."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pytest
 import softkin
-from softkin import Status
 
 from derive.description.validate import validate
 from derive.frames import Ry, Rz, Ty, Tz
 from derive.mechanism import Task, Turning, length, rotary
 from derive.pipeline import Built, derive_and_measure, languages
+from tests.catalogue.both_ways import missed
+from tests.languages.language import Language
 from tests.machines.made import Array, imported_class, made
 from tests.machines.searched_machines import POINTS
-from tests.machines.spoken import asked_in
+from tests.machines.spoken import EVERY_OTHER, answered
 from tests.machines.textbook import textbook
-from tests.text.controller import OK
 
 pytestmark = pytest.mark.slow
 
-ZERO = dict(zip(POINTS, (("beside_3",), ("beside_3", "beside_4")), strict=True))
 DECADES = (-1.0, -2.0, -2.7, -3.0, -3.5, -4.0, -5.0, -6.0, -8.0, -10.0, -12.0)
 EVERY = pytest.mark.parametrize("name", POINTS)
-
-
-def parameters(name: str) -> dict[str, float]:
-    return {"beside_1": 397.9, "beside_2": 94.6, "beside_3": 63.1, "beside_4": 66.7, "reach_a": 247.1} | dict.fromkeys(
-        ZERO[name], 0.0
-    )
+SHIFTS = {"beside_1": 397.9, "beside_2": 94.6, "beside_3": 0.0, "reach_a": 247.1}
+BESIDE_4 = dict(zip(POINTS, (66.7, 0.0), strict=True))
 
 
 def poses(name: str) -> tuple[softkin.Mechanism, Array, Array]:
     """The machine, its axes next to a stretched elbow, and references far away."""
     rng = np.random.default_rng(21)
-    rows = [
-        (*rng.uniform(-180.0, 180.0, 2), elbow + sign * 10.0**decade)
-        for decade in DECADES
-        for elbow in (90.0, -90.0)
-        for sign in (1.0, -1.0)
-    ]
-    robot = type(made(name).robot)(**parameters(name))
-    return robot, np.array(rows), rng.uniform(-180.0, 180.0, (len(rows), 3))
+    signs = (1.0, -1.0)
+    beside = [elbow + sign * 10.0**decade for decade in DECADES for elbow in (90.0, -90.0) for sign in signs]
+    rows = np.array([(*rng.uniform(-180.0, 180.0, 2), elbow) for elbow in beside])
+    robot = type(made(name).robot)(**SHIFTS, beside_4=BESIDE_4[name])
+    return robot, rows, rng.uniform(-180.0, 180.0, rows.shape)
 
 
-def is_met(robot: softkin.Mechanism, axes: Sequence[float], frame: softkin.Frame) -> bool:
-    return bool(np.abs(np.subtract(robot.forward(tuple(axes))[0].position, frame.position)).max() < 1e-6)
+def are_met(robot: softkin.Mechanism, axes: Array, found: Array) -> bool:
+    places, reached = (robot.forward_batch(rows)[0] for rows in (axes, found))
+    return bool(np.abs(reached - places).max() < 1e-6)
 
 
 @EVERY
 def test_every_planted_pose_is_answered_on_its_branch(name: str) -> None:
     """One by one, and all at once."""
     robot, axes, references = poses(name)
-    positions, rotations, configurations, _ = robot.forward_batch(axes)
-    found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
-    assert (statuses == softkin.Status.OK).all(), axes[statuses != softkin.Status.OK].tolist()
-    for row, reference, all_at_once in zip(axes, references, found, strict=True):
-        frame, configuration = robot.forward(tuple(row))
-        assert is_met(robot, robot.inverse(frame, configuration, tuple(reference)), frame)
-        assert is_met(robot, all_at_once, frame)
+    assert missed(robot, axes, references)[0] < 1e-6
+    rows = zip(axes.tolist(), references.tolist(), strict=True)
+    assert are_met(robot, axes, np.array([robot.inverse(*robot.forward(row), near) for row, near in rows]))
 
 
 @EVERY
-def test_the_block_answers_every_planted_pose(name: str) -> None:
+@EVERY_OTHER
+def test_other_languages_answer_every_planted_pose(name: str, language: Language | None) -> None:
     robot, axes, references = poses(name)
-    block = made(name).controller()
-    assert block.initialise(robot.parameters) == OK
-    for row, reference in zip(axes, references, strict=True):
-        frame, configuration = robot.forward(tuple(row))
-        status, answer = block.inverse(frame.position, frame.rotation, configuration, tuple(reference))
-        assert status == OK, row.tolist()
-        assert is_met(robot, answer[:3], frame)
-
-
-@EVERY
-@pytest.mark.parametrize("language", ["c", "javascript"])
-def test_other_languages_answer_every_planted_pose(name: str, language: str) -> None:
-    robot, axes, references = poses(name)
-    asked = []
-    for row, reference in zip(axes.tolist(), references.tolist(), strict=True):
-        frame, configuration = robot.forward(tuple(row))
-        pose = {"position": list(frame.position), "rotation": [list(r) for r in frame.rotation]}
-        asked.append(["inverse", pose, list(configuration), reference])
-    (answer,) = asked_in(language, made(name).mechanism, [{"parameters": dict(robot.parameters), "calls": asked}])
-    for row, found in zip(axes, answer["found"], strict=True):
-        assert found["status"] == 0, row.tolist()
-        assert is_met(robot, found["axes"], robot.forward(tuple(row))[0])
+    assert are_met(robot, axes, answered(language, made(name), robot, axes, references))
 
 
 A1, A2, A3, A4, A5, A6 = JOINTS = tuple(rotary(f"A{k}", f"turn A{k}") for k in range(1, 7))
@@ -112,10 +79,6 @@ def test_an_answer_meets_its_pose() -> None:
     axes[:, 4] = rng.choice([0.0, 180.0], COUNT) + beside[:, 4]
     for unit in (1.0, 1e-3):
         robot = made(**{name: size * unit for name, size in SIZES.items()})
-        positions, rotations, configurations, _ = robot.forward_batch(axes)
         for near in (axes, np.zeros_like(axes)):
-            found, statuses = robot.inverse_batch(positions, rotations, configurations, near)
-            assert (statuses == Status.OK).all()
-            again, turned = robot.forward_batch(found)[:2]
-            assert np.abs(again - positions).max() / (sum(SIZES.values()) * unit) <= WITHIN
-            assert np.abs(turned - rotations).max() <= WITHIN
+            places, turns = missed(robot, axes, near)
+            assert places / (sum(SIZES.values()) * unit) <= WITHIN and turns <= WITHIN

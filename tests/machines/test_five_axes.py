@@ -12,11 +12,11 @@ from softkin import Frame, KinematicsError, Status
 from derive import compile_mechanism
 from derive.five_axes import ORDERS, five_axes
 from derive.mechanism import DescriptionError
+from tests.catalogue.five_axes import AXES
+from tests.catalogue.five_axes import tool as by_hand
 from tests.mechanisms import catalogue
-from tests.orthonormal import rodrigues
 
 Array = NDArray[np.float64]
-AXES = {"A": np.eye(3)[0], "B": np.eye(3)[1], "C": np.eye(3)[2]}
 LENGTHS = {"pivot_x": 30.0, "pivot_y": -40.0, "pivot_z": 55.0, "tool_length": 120.0, "fork_offset": 25.0,
            "head_offset": -15.0, "pivot_length": 200.0}  # fmt: skip
 NUTATION = 52.0
@@ -40,43 +40,10 @@ def machine(order: str, nutating: bool, errors: bool) -> softkin.Mechanism:
 
 
 def tool(robot: softkin.Mechanism, order: str, axes: Array) -> tuple[Array, Array]:
-    """The tip and the direction of the tool, seen from the workpiece: vectors through one axis after the other."""
-    head, table = ORDERS[order]
-    inner = (table[::-1] + head)[1]
-    p, values = robot.parameters, dict(zip(head + table, axes[3:], strict=True))
-
-    def stand(letter: str) -> tuple[Array, Array]:
-        others = [a for a in "ABC" if a != letter]
-        place = sum(p.get(f"e{'xyz'['ABC'.index(a)]}0{letter.lower()}", 0.0) * AXES[a] for a in others)
-        first, second = (rodrigues(AXES[a], np.radians(p.get(f"e{a.lower()}0{letter.lower()}", 0.0))) for a in others)
-        return np.asarray(place), first @ second
-
-    def turn(letter: str, sense: int) -> Array:
-        line = AXES[letter]
-        if letter == inner and "nutation" in p:
-            line = np.cos(np.radians(p["nutation"])) * AXES["C"] + np.sin(np.radians(p["nutation"])) * line
-        return rodrigues(line, np.radians(sense * values[letter]))
-
-    x, y, z = AXES.values()
-    direction = z
-    if head:
-        side = x if head[-1] == "B" else y
-        tip = p["head_offset"] * side - p["pivot_length"] * z
-    else:
-        tip = -p["tool_length"] * z
-    for k, letter in enumerate(reversed(head)):
-        place, lean = stand(letter)
-        tip, direction = place + lean @ turn(letter, 1) @ tip, lean @ turn(letter, 1) @ direction
-        if len(head) == 2 and k == 0:
-            tip = tip + p["fork_offset"] * np.abs(np.cross(AXES[head[0]], AXES[head[1]]))
-    tip = tip + axes[:3]
-    for k, letter in enumerate(table):
-        place, lean = stand(letter)
-        back = turn(letter, -1) @ lean.T
-        tip, direction = back @ (tip - place), back @ direction
-        if len(table) == 2 and k == 0:
-            tip = tip - np.array([p.get(f"pivot_{c}", 0.0) for c in "xyz"])
-    return tip, direction
+    """The tip and the direction of the tool, seen from the workpiece."""
+    row = np.array([*axes[:3], *np.radians(axes[3:])])
+    tips, rotations = by_hand(*ORDERS[order], robot.parameters, row[:, None])
+    return tips[0], rotations[0, :, 2]
 
 
 def values(solutions: Sequence[softkin.Solution]) -> Array:
@@ -141,9 +108,7 @@ def test_a_tilted_plane_turns_the_tool_alone(order: str, nutating: bool, errors:
 
 def test_a_machine_without_a_direction_has_no_tilted_plane() -> None:
     scara = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
-    with pytest.raises(
-        KinematicsError, match=r"tilted_plane: its task is not the direction of a tool: ask inverse_all"
-    ):
+    with pytest.raises(KinematicsError, match="tilted_plane: its task is not the direction of a tool: ask inverse_all"):
         scara.tilted_plane(Frame((0.0, 0.0, 0.0)), (0.0, 0.0, 0.0))
     with pytest.raises(KinematicsError, match="a rotation must be one"):
         machine("TableTable_AB", False, False).tilted_plane(((0, 0, 0), np.zeros((3, 3))), (0.0,) * 5)

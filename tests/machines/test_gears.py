@@ -105,9 +105,7 @@ def assert_none_between(machine: Made, axes: Array, moved: Array, axis: int) -> 
     tried = np.array([row + step for row in rows for step in steps])
     reached, turned = machine.closure.poses(tried)
     missing = reached - positions
-    following = [
-        np.eye(len(axes))[i] for i in range(len(axes)) if i not in turning
-    ]  # they move it along straight lines
+    following = [np.eye(len(axes))[i] for i in range(len(axes)) if i not in turning]  # along straight lines
     if following:
         moves = np.stack([machine.closure.poses(tried + step)[0] - reached for step in following], axis=2)
         shares = np.linalg.pinv(moves) @ missing[:, :, None]
@@ -283,9 +281,8 @@ def test_a_machine_with_gears_carries_an_orientation_kinematics() -> None:
 
 
 def test_a_gear_that_is_written_as_a_decimal_number_is_a_fraction() -> None:
-    own = with_gears(
-        replace(DRIVEN["SCARA with gears"], chain=Rz(A1 * 0.3333333333333333) * Tx(L1) * Rz(A2 * 0.0125) * Tz(Z))
-    )
+    chain = Rz(A1 * 0.3333333333333333) * Tx(L1) * Rz(A2 * 0.0125) * Tz(Z)
+    own = with_gears(replace(DRIVEN["SCARA with gears"], chain=chain))
     assert [str(joint.ratio) for joint in own.joints] == ["1/3", "1/80", "1"]
 
 

@@ -12,16 +12,17 @@ import numpy as np
 import pytest
 import softkin
 from numpy.random import Generator
-from softkin import Frame, Status
+from softkin import Status
 
+from tests.languages.language import Language
 from tests.machines.made import Array, made
 from tests.machines.parallel_machines import LAST
-from tests.machines.spoken import asked_in
-from tests.text.controller import OK
+from tests.machines.spoken import EVERY_OTHER, answered
 
 REFERENCES = ("own", "zero", "far")
 """The pose itself, zero, and axes within two turns."""
 _TURNS = 720.0
+_LONG_WRIST = {"d1": -90.0, "a2": -470.0, "a3": -340.0, "d4": -520.0, "d5": -410.0, "d6": -420.0}
 _FIVE_BAR = ("base_distance", "arm_length_1", "arm_length_2", "rod_length_1", "rod_length_2")
 
 
@@ -34,12 +35,9 @@ class Kind:
     slides: tuple[int, ...] = ()
 
 
-def _in_metres(sizes: Mapping[str, float]) -> dict[str, float]:
-    return {name: value / 1000.0 for name, value in sizes.items()}
-
-
 def _sizes(unequal: Mapping[str, float], equal: Mapping[str, float]) -> dict[str, Mapping[str, float]]:
-    return {"unequal": unequal, "equal": equal, "in metres": _in_metres(unequal), "equal, in metres": _in_metres(equal)}
+    found = {"unequal": unequal, "equal": equal}
+    return found | {f"{label}, in metres": {n: v / 1000.0 for n, v in sizes.items()} for label, sizes in found.items()}
 
 
 KINDS = {
@@ -49,16 +47,7 @@ KINDS = {
             {"d1": 120.0, "a2": -600.0, "a3": -560.0, "d4": 160.0, "d5": 110.0, "d6": 95.0},
             {"d1": 100.0, "a2": -400.0, "a3": -400.0, "d4": 0.0, "d5": 100.0, "d6": 100.0},
         )
-        | {
-            "wrist longer than its links": {
-                "d1": -90.0,
-                "a2": -470.0,
-                "a3": -340.0,
-                "d4": -520.0,
-                "d5": -410.0,
-                "d6": -420.0,
-            }
-        },
+        | {"wrist longer than its links": _LONG_WRIST},
     ),
     "three parallel axes last": Kind(
         LAST,
@@ -198,40 +187,13 @@ def test_no_pose_is_lost_one_by_one(name: str) -> None:
                 assert any(s.axes is not None for s in machine.robot.inverse_all(frame, near))
 
 
-def asked(count: int) -> tuple[Sized, list[tuple[list[float], Frame, tuple[int, ...], list[float]]]]:
-    """Poses of the arm whose parallel axes come last: axes, frame, configuration, reference."""
+@EVERY_OTHER
+def test_other_languages_lose_no_pose(language: Language | None) -> None:
+    """Of the arm whose parallel axes come last."""
     rng, machine = np.random.default_rng(34), next(sized(KINDS["three parallel axes last"]))
-    axes = machine.axes(count, rng)
-    near = [references(REFERENCES[k % 3], axes[k : k + 1], rng)[0].tolist() for k in range(len(axes))]
-    rows = [(row, *machine.robot.forward(row), r) for row, r in zip(axes.tolist(), near, strict=True)]
-    return machine, rows
-
-
-def is_met(machine: Sized, axes: list[float], answer: Array) -> bool:
-    return bool(machine.missed(np.array([axes]), np.array([answer])).max() <= WITHIN)
-
-
-def test_the_block_loses_no_pose() -> None:
-    """In executed Structured Text."""
-    machine, rows = asked(90)
-    controller = made(LAST).controller()
-    assert controller.initialise(machine.robot.parameters) == OK
-    for axes, frame, configuration, near in rows:
-        status, answer = controller.inverse(frame.position, frame.rotation, configuration, near)
-        assert status == OK, axes
-        assert is_met(machine, axes, answer[: len(axes)])
-
-
-@pytest.mark.parametrize("language", ["c", "javascript"])
-def test_other_languages_lose_no_pose(language: str) -> None:
-    machine, rows = asked(600)
-    poses = [{"position": list(f.position), "rotation": [list(r) for r in f.rotation]} for _, f, _, _ in rows]
-    calls = [["inverse", pose, list(row[2]), row[3]] for pose, row in zip(poses, rows, strict=True)]
-    sent = [{"parameters": dict(machine.robot.parameters), "calls": calls}]
-    (found,) = asked_in(language, made(LAST).mechanism, sent)
-    for row, answer in zip(rows, found["found"], strict=True):
-        assert answer["status"] == 0, row[0]
-        assert is_met(machine, row[0], answer["axes"])
+    axes = machine.axes(600 if language else 90, rng)
+    near = np.concatenate([references(REFERENCES[k % 3], axes[k : k + 1], rng) for k in range(len(axes))])
+    assert machine.missed(axes, answered(language, made(LAST), machine.robot, axes, near)).max() <= WITHIN
 
 
 def test_what_the_machine_does_not_reach_stays_refused() -> None:

@@ -38,9 +38,7 @@ def own_grid(machine: Made) -> Array:
 
 
 def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
-    """The answer on every branch. A search sorts what it finds for all branches by the signs at the root, and a double
-    root has none; a call for one branch does not.
-    """
+    """The answer on every branch; of a search by calls for one branch, which a double root does not mislead."""
     for solution in machine.robot.inverse_all(frame, axes):
         found = solution.axes
         if is_searched(machine):

@@ -1,32 +1,13 @@
 """The nearest solution of machines with gears, belts and differentials: their turns move several axes."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 from softkin import KinematicsError, Status
 
-from tests.machines.made import Made, made
+from tests.catalogue.calls.test_nearest import NUMBERS, by_naming
+from tests.machines.made import made
 from tests.machines.task_machines import DRIVEN
-from tests.machines.test_gears import anywhere, bytes_of_turns, tolerance
-
-Axes = tuple[float, ...]
-
-
-def every_turn(machine: Made, robot: object, frame: object, near: Axes) -> list[Axes]:
-    """Every slot on every turn by its number, inside the limits."""
-    found, places = [], bytes_of_turns(machine)
-    numbers = (-3, -2, -1, 1, 2, 3) if len(places) <= 2 else (-2, -1, 1, 2)
-    for slot in robot.inverse_all(frame, near):  # type: ignore[attr-defined]
-        for turns in product(numbers, repeat=len(places)):
-            named = list(slot.configuration)
-            for place, turn in zip(places, turns, strict=True):
-                named[place] = turn
-            try:
-                found.append(robot.inverse(frame, named, near))  # type: ignore[attr-defined]
-            except KinematicsError as error:
-                assert error.status is Status.UNREACHABLE
-    return found
+from tests.machines.test_gears import anywhere, tolerance
 
 
 @pytest.mark.parametrize("name", DRIVEN)
@@ -46,7 +27,7 @@ def test_no_sum_of_turns_is_nearer(name: str, measure: str) -> None:
         }
         robot = machine.robot.changed(limits=limits)
         near = tuple((axes + np.where(angles, rng.uniform(-400.0, 400.0, len(axes)), 0.0)).tolist())
-        truth = every_turn(machine, robot, frame, near)
+        truth = by_naming(robot, frame, near, NUMBERS if len(robot.PERIOD_AXES) <= 2 else (-2, -1, 1, 2))
         batch, statuses = robot.nearest_batch([frame.position], [frame.rotation], [near], measure=measure)
         try:
             found = robot.nearest(frame, near, measure=measure)

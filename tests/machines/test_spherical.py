@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.description.validate import validate
 from derive.pipeline import derive_one
+from tests.catalogue.mounted.test_velocities import matrix_of, rows_of
 from tests.harness.parse import parse
 from tests.harness.unused import unused
 from tests.machines.both import forward_in_both, in_both, inverse_in_both
@@ -86,15 +87,8 @@ def test_the_jacobian_is_that_of_the_equations(name: str) -> None:
     assert set(robot.JACOBIAN_ROWS) == rows
     frame, _ = robot.forward(robot.inverse(((0.0, 0.0, 0.0), tuple(map(tuple, near_home(1, 0.4)[0].tolist()))), None))
     axes = np.array(robot.inverse(frame, None))
-    units = np.where([j.is_angle for j in SPHERICAL[name].joints], np.pi / 180.0, 1.0)
-    jacobian, step = np.array(robot.jacobian(axes)), 1e-5
-    for k in range(len(axes)):
-        ends = [np.array(robot.forward(axes + way * step * np.eye(len(axes))[k])[0].rotation) for way in (-1, 1)]
-        rate = (ends[1] - ends[0]) / (2 * step) / units[k]
-        own = np.array(frame.rotation)
-        spin = rate @ own.T if len(axes) == 3 else own.T @ rate
-        told = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])[: len(jacobian)]
-        assert jacobian[:, k] == pytest.approx(told, rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
+    jacobian = matrix_of(robot, axes)
+    assert jacobian == pytest.approx(rows_of(robot, axes, 1.0), rel=1e-5, abs=1e-5 * np.abs(jacobian).max())
 
 
 @EVERY

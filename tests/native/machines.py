@@ -86,5 +86,4 @@ def outcome(call: Callable[..., Any], *given: Any) -> Any:
 
 
 def _without_places(text: str) -> str:
-    """A text without the addresses of objects."""
     return re.sub("0x[0-9a-f]+", "…", text)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from tests.native.build import EXTENSION, ROOT, SANITIZED, SHARED, SOURCES, built, compiler
+from tests.outside import output_of
 
 FEW = ("ac6_txtytzryrxrz", "crane", "wrist2", "scara4_zccoupled_type1", "pos_rrr")
 """The machines of the extension that is built for this: their formulas are tested elsewhere, in all machines."""
@@ -56,9 +57,7 @@ def test_nothing_is_found(tmp_path: Path) -> None:
     (sources / "machines.h").write_text(re.sub(r"SOFTKIN_MACHINES \d+", f"SOFTKIN_MACHINES {len(FEW)}", header))
     folder = built(tmp_path / "built", SANITIZED, sources)
     assert (folder / f"{EXTENSION}.abi3.so").is_file()
-    library = subprocess.run(
-        [*compiler(), "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
-    ).stdout
+    library = output_of([*compiler(), "-print-file-name=libasan.so"])
     done = subprocess.run(
         [sys.executable, "-c", CODE],
         cwd=ROOT,

@@ -79,7 +79,7 @@ def drawn_limits(one: Robot, axes: Axes, rng: np.random.Generator) -> dict[str, 
     return found
 
 
-__all__ = ["BASE", "EVERY", "confirm_copies", "limited", "machines", "radian", "tool_of"]
+__all__ = ["BASE", "EVERY", "confirm_copies", "limited", "machines", "mounted", "radian", "tool_of"]
 
 COUPLINGS = couplings()
 EVERY = (*NAMES, *COUPLINGS)
@@ -119,6 +119,11 @@ def tool_of(robot: softkin.Mechanism) -> Frame:
         else:
             return tool
     return Frame((0.0, 0.0, 0.0), TOOL.rotation)
+
+
+def mounted(robot: softkin.Mechanism) -> softkin.Mounted:
+    """The machine on the base, with its tool."""
+    return robot.with_base(BASE).with_tool(tool_of(robot))
 
 
 def radian(robot: softkin.Mechanism, axes: Axes) -> Axes:

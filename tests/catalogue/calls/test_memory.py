@@ -4,8 +4,10 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
+from softkin import Mechanism
 
-from tests.catalogue.calls.mountings import NAMES, poses, robots
+from tests.catalogue.calls.mountings import NAMES, machines, mounted, poses, radian, robots
 from tests.mechanisms import catalogue
 
 pytestmark = pytest.mark.broad
@@ -16,10 +18,9 @@ SLOW = tuple(m.name for _, m in catalogue() if m.is_platform or m.search)
 """Machines of which one row takes long."""
 
 
-def on_the_way(name: str, rows: int) -> tuple[float, float]:
-    """The bytes of the result, and those of everything else at the peak."""
-    robot = robots(name)[0].made
-    axes = np.array(poses(name, 0, 3)).reshape(3, len(robot.AXES))
+def on_the_way(robot: Mechanism, poses: ArrayLike, rows: int) -> tuple[float, float]:
+    """The bytes of the result, and those of everything else at the peak. poses: axis values, which are repeated."""
+    axes = np.reshape(poses, (-1, len(robot.AXES)))
     positions, rotations = (np.resize(part, (rows, *part.shape[1:])) for part in robot.forward_batch(axes)[:2])
     near = np.resize(axes, (rows, len(robot.AXES)))
     robot.inverse_all_batch(positions[:9], rotations[:9], near[:9])
@@ -36,8 +37,20 @@ def on_the_way(name: str, rows: int) -> tuple[float, float]:
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in SLOW])
 def test_the_peak_is_hardly_more_than_the_result(name: str) -> None:
     """Traced, without the input."""
-    size, more = on_the_way(name, MANY)
+    size, more = on_the_way(robots(name)[0].made, poses(name, 0, 3), MANY)
     assert size + more <= MOST * size
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "name", ["Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Gantry3", "scara, wrist"]
+)
+def test_with_base_and_tool_it_is_no_more(name: str) -> None:
+    """In radians, too."""
+    bare, axes, _ = machines(name)[0]
+    for robot, near in ((mounted(bare), axes), (mounted(bare).in_radians(), radian(bare, axes))):
+        size, more = on_the_way(robot, near, MANY)
+        assert size + more <= MOST * size
 
 
 @pytest.mark.long
@@ -49,5 +62,5 @@ def test_few_rows_are_taken_at_once(name: str, monkeypatch: pytest.MonkeyPatch) 
     robot = robots(name)[0].made
     together = _batch._rows_together(robot._array_programs().VALUES, MANY, 2**robot.BRANCHES, len(robot.AXES))
     monkeypatch.setattr(_batch, "_rows_together", lambda *given: together)
-    size, more = on_the_way(name, 3 * together)
+    size, more = on_the_way(robot, poses(name, 0, 3), 3 * together)
     assert more <= (MOST - 1.0) * size / (3 * together) * MANY

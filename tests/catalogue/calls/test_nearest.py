@@ -34,12 +34,14 @@ def every_slot(one: softkin.Mechanism, frame: softkin.Frame, near: Axes) -> Iter
             yield slot, axes
 
 
-def by_naming(one: softkin.Mechanism, frame: softkin.Frame, near: Axes) -> list[Axes]:
+def by_naming(
+    one: softkin.Mechanism, frame: softkin.Frame, near: Axes, numbers: tuple[int, ...] = NUMBERS
+) -> list[Axes]:
     """Every slot on every turn, by its number: the limits are those of the machine."""
     found = []
     turning = one._period_bytes
     for slot in one.inverse_all(frame, near):
-        for turns in product(NUMBERS, repeat=len(turning)):
+        for turns in product(numbers, repeat=len(turning)):
             named = list(slot.configuration)
             for place, turn in zip(turning, turns, strict=True):
                 named[place] = turn
@@ -163,10 +165,8 @@ def test_the_nearest_miss() -> None:
     """The limit that is exceeded least gives the reason; out of reach, the missing amount."""
     robot = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=200.0, limits={"A1": (-10.0, 10.0), "A2": (-30.0, 300.0)})
     frame = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=200.0).forward((12.0, -50.0, 0.0))[0]
-    assert (
-        refusal(robot.nearest, frame, (0.0, 0.0, 0.0), says=r"A1: above its upper limit, missing 2\.0 deg")
-        is Status.UNREACHABLE
-    )
+    says = r"A1: above its upper limit, missing 2\.0 deg"
+    assert refusal(robot.nearest, frame, (0.0, 0.0, 0.0), says=says) is Status.UNREACHABLE
     with pytest.raises(KinematicsError, match=r"A2: out of reach, missing 50\.0 u"):
         robot.nearest(((550.0, 0.0, 0.0), frame.rotation), (0.0, 0.0, 0.0))
 
@@ -182,11 +182,8 @@ def test_what_is_refused() -> None:
 
 def test_an_axis_that_is_free_keeps_to_its_limits() -> None:
     """A straight wrist, with the reference beyond the limits of the axis that the pose leaves free."""
-    robot = softkin.Scara3ZCCC(link_length_1=300.0, link_length_2=300.0, link_length_3=50.0).changed(
-        limits={"A2": (-60.0, 60.0)}
-    )
+    free = softkin.Scara3ZCCC(link_length_1=300.0, link_length_2=300.0, link_length_3=50.0)
+    robot = free.changed(limits={"A2": (-60.0, 60.0)})
     frame = robot.forward((0.0, 20.0, 180.0, 0.0))[0]  # the wrist is on axis A2
     found = robot.nearest(frame, (0.0, 130.0, 180.0, 0.0))
-    assert found[1] == pytest.approx(60.0) and robot.forward(found)[0].position == pytest.approx(
-        frame.position, abs=1e-9
-    )
+    assert found[1] == pytest.approx(60) and robot.forward(found)[0].position == pytest.approx(frame.position, abs=1e-9)

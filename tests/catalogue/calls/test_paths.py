@@ -17,7 +17,7 @@ import softkin
 from softkin import Frame, KinematicsError, Status
 from softkin._plot import Line, lines_of
 
-from tests.catalogue.calls.mountings import BASE, EVERY, NAMES, frame_at, machines, poses, radian, robots, tool_of
+from tests.catalogue.calls.mountings import EVERY, NAMES, frame_at, machines, mounted, poses, radian, robots
 from tests.catalogue.refusals import refusal
 from tests.catalogue.robots import KR6_R900
 from tests.catalogue.search.arms import turn
@@ -137,7 +137,6 @@ matplotlib.use("Agg")
 
 
 def ends(lines: list[Line]) -> np.ndarray:
-    """The ends of lines (N, 2, 3)."""
     return np.array([line[:2] for line in lines]).reshape(-1, 2, 3)
 
 
@@ -146,7 +145,7 @@ def ends(lines: list[Line]) -> np.ndarray:
 def test_the_lines_of_a_machine_end_at_its_tool(name: str) -> None:
     """Bare, on a base with a tool, calibrated, and in radians; a chain is one line without a gap."""
     for bare, axes, size in machines(name):
-        for robot in (bare, bare.with_base(BASE).with_tool(tool_of(bare))):
+        for robot in (bare, mounted(bare)):
             lines = lines_of(robot, axes)
             tool = np.array(robot.forward(axes)[0].position)
             assert lines or not robot.AXES

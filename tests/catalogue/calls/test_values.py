@@ -16,15 +16,18 @@ from tests.catalogue.calls.mountings import (
     EVERY,
     NAMES,
     confirm_copies,
-    drawn_limits,
+    limited,
     machines,
-    poses,
+    mounted,
+    radian,
     robots,
-    tool_of,
-    with_limits,
 )
 from tests.catalogue.refusals import refusal
 
+UNCHANGED = (
+    "bare", "base", "tool", "checks_limits", "parameters", "_constants", "_shift", "forward", "AXES", "limits", "part",
+    "new",
+)  # fmt: skip
 SCARA = {"link_length_1": 325.0, "link_length_2": 225.0}
 
 
@@ -46,29 +49,38 @@ class Slotted(softkin.Gantry2):
         self.label = "mine"
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.broad
+@pytest.mark.parametrize("name", EVERY)
 def test_every_machine_is_a_value(name: str) -> None:
-    """Copies of every kind are equal; another parameter makes another machine."""
-    rng = np.random.default_rng(6)
-    for number, one in enumerate(robots(name)):
-        axes = poses(name, number, 1)[0]
-        made = with_limits(one.made, drawn_limits(one, axes, rng))
-        confirm_copies(made, axes, type(made).from_json(made.to_json()))
-        for parameter in made.PARAMETERS:
-            assert getattr(made, parameter.name) == made.parameters[parameter.name]
-        before = (repr(made), made.checks_limits, made.forward(axes))
-        for attribute in ("checks_limits", "parameters", "_constants", "forward", "AXES", "limits", "part", "new"):
-            with pytest.raises(AttributeError):
-                setattr(made, attribute, {})
-        for attribute in ("checks_limits", "parameters"):
-            with pytest.raises(AttributeError):
-                delattr(made, attribute)
-        with pytest.raises(TypeError):
-            made.parameters["check_limits"] = False  # type: ignore[index]
-        assert (repr(made), made.checks_limits, made.forward(axes)) == before
-        if made.PARAMETERS:
-            other = made.changed(check_limits=False)
-            assert other != made and not other.check_limits and other.changed(check_limits=True) == made
+    """Copies of every kind are equal, with base and tool and in radians, too; another parameter or tool makes another
+    machine, and nothing of one changes.
+    """
+    for robot, axes, _ in limited(name, np.random.default_rng(6)):
+        made = mounted(robot)
+        radians = made.in_radians()
+        assert mounted(robot.in_radians()) == radians and radians.in_degrees() is made
+        for one, at in ((robot, axes), (made, axes), (radians, radian(robot, axes))):
+            own = type(robot) if one is robot else softkin.Mounted
+            confirm_copies(one, at, own.from_json(one.to_json()))
+            for parameter in one.PARAMETERS:
+                assert getattr(one, parameter.name) == one.parameters[parameter.name]
+            before = (repr(one), one.checks_limits, one.forward(at))
+            for attribute in UNCHANGED:
+                with pytest.raises(AttributeError):
+                    setattr(one, attribute, {})
+            for attribute in ("checks_limits", "parameters"):
+                with pytest.raises(AttributeError):
+                    delattr(one, attribute)
+            with pytest.raises(TypeError):
+                one.parameters["check_limits"] = False  # type: ignore[index]
+            assert (repr(one), one.checks_limits, one.forward(at)) == before
+            if one.PARAMETERS:
+                other = one.changed(check_limits=False)
+                assert other != one and not other.check_limits and other.changed(check_limits=True) == one
+        for one in (made, radians):
+            assert one.changed(base=BASE.matrix) == one != one.changed(tool=softkin.Frame((0.0, 0.0, 0.0)))
+            assert one.changed(tool=softkin.Frame((0.0, 0.0, 0.0))) == one.changed(tool=np.eye(4))
+        assert made != radians and made != robot and made.limits == robot.limits
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -198,8 +210,8 @@ def test_a_coupling_says_which_part_is_wrong(part: str, wrong: object) -> None:
 def test_all_that_a_machine_has_is_in_its_tables(name: str) -> None:
     """Axes, given parameters, branches, base and tool: as text and as well-formed HTML, in degrees and in radians."""
     for bare, _, _ in machines(name):
-        mounted = bare.with_base(BASE).with_tool(tool_of(bare))
-        for robot in (bare, bare.in_radians(), mounted, mounted.in_radians()):
+        made = mounted(bare)
+        for robot in (bare, bare.in_radians(), made, made.in_radians()):
             text = str(robot)
             page = ET.fromstring(robot._repr_html_())
             cells = ["".join(cell.itertext()) for cell in page.iter("td")]
@@ -213,7 +225,7 @@ def test_all_that_a_machine_has_is_in_its_tables(name: str) -> None:
             expected += [p.meaning for p in bare.PARAMETERS if p.default is None]
             assert all(word in text and (word in cells or not word) for word in expected)
             frames = [line.split()[0] for line in lines if line[:5] in ("base ", "tool ")]
-            assert frames == ["base", "tool"] * (robot.in_degrees() is mounted)
+            assert frames == ["base", "tool"] * (robot.in_degrees() is made)
 
 
 @pytest.mark.broad
@@ -227,8 +239,7 @@ def test_limits_are_in_the_unit_of_the_axis() -> None:
     assert found == ["-3.14159 to 1.5708 rad", "from -0.174533 rad", "to 5 u", "none"]
     arm = softkin.PCC(link_length_1=300.0, link_length_2=200.0, lower_elbow=10.0, upper_elbow=170.0)
     for robot, words in ((arm, "10 to 170 deg"), (arm.in_radians(), "0.174533 to 2.96706 rad")):
-        mounted = robot.with_base(BASE)
-        for one in (robot, mounted):
+        for one in (robot, robot.with_base(BASE)):
             assert words in next(line for line in str(one).splitlines() if line.startswith("elbow"))
 
 

@@ -86,10 +86,7 @@ def orientation_parts(mechanism: Mechanism) -> tuple[Part, ...]:
 
 
 def frames(carrier: Part, first: Array, wrist: Part, second: Array) -> tuple[Array, Array, Array, Array]:
-    """Positions and rotations of the flange, then of the end point on it, from the equations of a chain.
-
-    Of a closed loop the flange is where its own forward kinematics has it: that is tested elsewhere.
-    """
+    """Poses of the flange, then of the end point, by equations; a loop's flange is where forward has it."""
     if carrier.mechanism.chain is None:
         places, turns = carrier.robot.forward_batch(first)[:2]
     else:

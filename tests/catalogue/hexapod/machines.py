@@ -14,6 +14,7 @@ from derive.ir.reason import Why, about_machine
 from derive.kinematics.kinematics import Kinematics
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.mechanisms import kinematics_of, named
+from tests.orthonormal import turned
 
 Array = NDArray[np.float64]
 
@@ -33,9 +34,7 @@ class Machine:
             for i in range(6)
             for k, c in enumerate("xyz")
         }
-        self.given |= {
-            f"home_{n}": float(v) for n, v in zip(("x", "y", "z", "roll", "pitch", "yaw"), home, strict=True)
-        } | more
+        self.given |= {f"home_{n}": float(v) for n, v in zip("x y z roll pitch yaw".split(), home, strict=True)} | more
         self.robot = Hexapod(**self.given)
         self.offsets = np.array([self.given.get(f"offset_l{i}", 0.0) for i in range(1, 7)])
 
@@ -81,13 +80,8 @@ class Machine:
 
 def rotations(degrees: Array) -> Array:
     """Rz(yaw) Ry(pitch) Rx(roll)."""
-    (cr, cp, cy), (sr, sp, sy) = (f(np.radians(degrees)).T for f in (np.cos, np.sin))
-    rows = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
+    roll, pitch, yaw = np.radians(degrees).T
+    return np.asarray(turned(2, yaw) @ turned(1, pitch) @ turned(0, roll))
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Array:

@@ -42,9 +42,7 @@ def test_five_passes_from_the_neighbouring_pose(machine: Machine) -> None:
 
 @pytest.mark.long
 def test_the_number_of_passes_is_noticed() -> None:
-    """Three passes are too few, and so are five where the rate of a turn is taken for the rates of
-    roll, pitch and yaw.
-    """
+    """Three passes are too few, and so are five where the rate of a turn is taken for those of roll, pitch and yaw."""
 
     def without_matrix(s: Statement) -> Statement:
         return (
@@ -104,21 +102,16 @@ def test_wild_lengths_end_alike_in_every_language(machine: Machine) -> None:
 
 @pytest.mark.parametrize("pitch", [90.0, -90.0, 89.999])
 def test_where_roll_pitch_and_yaw_are_singular(machine: Machine, pitch: float) -> None:
-    """A quarter turn of pitch away from the start: where the machine can hold that, it is found or refused, never
-    mistaken.
-    """
+    """A quarter turn of pitch away from the start: a pose is found or refused, never mistaken."""
     side = machine.side(machine.home[:3], machine.home_turn)
-    turns = np.array(
-        [rotation(0.0, pitch, 0.0) @ rotation(0.0, 0.0, yaw) @ machine.home_turn for yaw in (0.0, 10.0, 20.0, 30.0)]
-    )
+    turns = [rotation(0.0, pitch, 0.0) @ turned_by(machine, yaw) for yaw in (0.0, 10.0, 20.0, 30.0)]
     positions = machine.home[:3] + np.outer(np.arange(4) / 2.0, machine.home_turn[:, 2]) * machine.shift
     for turn in turns:
-        back, turned, _, status = machine.robot.forward_batch(machine.axes(positions, np.array([turn] * 4)))
+        axes = machine.axes(positions, np.array([turn] * 4))
+        back, turned, _, status = machine.robot.forward_batch(axes)
         assert set(status) <= {Status.OK, Status.IMPOSSIBLE}
         found = status == Status.OK
-        assert_allclose(
-            machine.axes(back[found], turned[found]), machine.axes(positions, np.array([turn] * 4))[found], rtol=1e-9
-        )
+        assert_allclose(machine.axes(back[found], turned[found]), axes[found], rtol=1e-9)
         assert {machine.side(p, r) for p, r in zip(back[found], turned[found], strict=True)} <= {side}
 
 
@@ -186,18 +179,18 @@ def test_an_asymmetric_machine_is_singular_elsewhere() -> None:
     place = machine.home[:3]
     low, high = 0.0, 120.0
     side = machine.side(place, machine.home_turn)
-    assert machine.side(place, turned(machine, high)) != side
+    assert machine.side(place, turned_by(machine, high)) != side
     for _ in range(60):
         middle = (low + high) / 2
-        low, high = (middle, high) if machine.side(place, turned(machine, middle)) == side else (low, middle)
+        low, high = (middle, high) if machine.side(place, turned_by(machine, middle)) == side else (low, middle)
     assert abs(low - 90.0) > 0.5
-    assert machine.robot.singularity(machine.axes(place, turned(machine, low - 1e-4))).is_singular
-    assert not machine.robot.singularity(machine.axes(place, turned(machine, low - 3.0))).is_singular
+    assert machine.robot.singularity(machine.axes(place, turned_by(machine, low - 1e-4))).is_singular
+    assert not machine.robot.singularity(machine.axes(place, turned_by(machine, low - 3.0))).is_singular
     with pytest.raises(KinematicsError):
-        machine.robot.inverse((place, turned(machine, low + 3.0)))
+        machine.robot.inverse((place, turned_by(machine, low + 3.0)))
 
 
-def turned(machine: Machine, yaw: float) -> Array:
+def turned_by(machine: Machine, yaw: float) -> Array:
     """The home rotation with more yaw."""
     return np.asarray(rotation(0.0, 0.0, yaw) @ machine.home_turn)
 

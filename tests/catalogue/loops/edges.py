@@ -1,5 +1,4 @@
-"""Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something
-ends."""
+"""Machines at the end of what can be assembled: their dimensions, and axis values where something ends."""
 
 from collections.abc import Mapping
 from math import cos, radians, sin, sqrt
@@ -23,6 +22,12 @@ def rails(arm: float, *points: tuple[float, float]) -> dict[str, float]:
     """Rods of one length, and vertical rails at these points."""
     named = {f"rail_{c}_{i}": v for i, point in enumerate(points, 1) for c, v in zip("xy", point, strict=True)}
     return {"arm_length": arm} | named
+
+
+def around(radius: float, *directions: float) -> list[tuple[float, float]]:
+    """Points of a circle, at 90, 210 and 330 degrees where no others are given."""
+    turns = [radians(a) for a in directions or (90.0, 210.0, 330.0)]
+    return [(radius * cos(turn), radius * sin(turn)) for turn in turns]
 
 
 def five_bar(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
@@ -180,5 +185,4 @@ PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]
         ),
     ),
 }
-"""Places that one leg after the other cannot aim at: its joint on the plate is on the axis of its drive, or too far
-away."""
+"""Places that one leg cannot aim at: its joint on the plate is on the axis of its drive, or too far away."""

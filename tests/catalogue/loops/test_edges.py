@@ -20,9 +20,7 @@ def test_every_loop_has_edges() -> None:
 
 @pytest.mark.parametrize("name", EDGES)
 def test_flat_rods_are_a_pose_that_nothing_controls(name: str) -> None:
-    """Forward kinematics answers at the boundary; there is no Jacobian, it is singular, and the inverse refuses to go
-    there.
-    """
+    """Forward answers at the boundary; there is no Jacobian, it is singular, and the inverse refuses it."""
     dimensions, axes = EDGES[name][0]
     robot = softkin.catalogue()[name](**dimensions)
     frame, configuration = robot.forward(axes)
@@ -57,9 +55,7 @@ def test_a_leg_that_cannot_aim_refuses_in_every_slot(name: str) -> None:
 def test_the_side_does_not_depend_on_how_legs_are_numbered(name: str) -> None:
     """Below is below: turned round, a machine is the same machine with its axes exchanged."""
     dimensions, axes = OTHER_WAY_ROUND[name]
-    renamed = {
-        key.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): value for key, value in dimensions.items()
-    }
+    renamed = {n.replace("_1", "_0").replace("_3", "_1").replace("_0", "_3"): v for n, v in dimensions.items()}
     swapped = name == "MC_KIN_TYPE_12_XY"
     same = dict(dimensions, swap_xy=0.0) if swapped else renamed
     for flag in (False, True):
@@ -77,8 +73,7 @@ ANGLES = (-180.0, -90.0, 0.0, 90.0, 180.0, 270.0)
 LENGTHS = (-0.5, -0.25, 0.0, 0.125, 0.25, 0.5)
 """Of a reach."""
 LOST = 3e-8
-"""Below this part of its size, a root of rounding, the determinant of the closure says nothing of a solution's
-existence."""
+"""Below this part of its size the determinant of the closure says nothing of a solution's existence."""
 
 
 def grid(machine: LoopMachine) -> Array:
@@ -94,9 +89,7 @@ def plates(machine: LoopMachine, axes: Array, positions: Array) -> Array:
 
 
 def test_the_grid(machines: tuple[LoopMachine, ...]) -> None:
-    """Forward closes the loop or refuses; what it answers goes round by scalar and batch, or is too near to losing the
-    plate.
-    """
+    """Forward closes the loop or refuses; what it answers goes round, or is too near to losing the plate."""
     nominal = machines[0]
     whole = {p.name: float(round(p.nominal, -1)) for p in nominal.mechanism.parameters}
     for machine in (*machines, loop_machine(nominal.mechanism, "round", whole)):

@@ -10,34 +10,18 @@ from softkin import KinematicsError, Status
 from derive.description.reach import discs_meet
 from derive.geometry.vectors import vector
 from derive.ir.interpret import evaluate
-from tests.catalogue.loops.edges import anchored
+from tests.catalogue.loops.edges import anchored, arms, around, azimuths, five_bar, links, rails
 
 Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}
 UPRIGHT = {"inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 0.0, "max_angle_ball_joint": 45.0}
-TYPE_12 = {
-    "link_length_1": 300.0,
-    "link_length_2": 350.0,
-    "link_length_3": 100.0,
-    "link_length_4": 300.0,
-    "link_length_5": 100.0,
-}
+TYPE_12 = links(300.0, 350.0, 100.0, 300.0, 100.0)
 
 
 def delta(radius: float) -> dict[str, float]:
     """A delta with arms of 100 and 200, whose drives are at this radius and whose plate has a radius of 40."""
-    found = {f"azimuth_{i}": a for i, a in enumerate((0.0, 120.0, 240.0), 1)}
-    for i in (1, 2, 3):
-        found |= {f"base_radius_{i}": radius, f"inner_arm_{i}": 100.0, f"outer_arm_{i}": 200.0, f"tcp_radius_{i}": 40.0}
-    return found
-
-
-def rails(radius: float) -> dict[str, float]:
-    """Rods of 250, and three vertical rails at this radius."""
-    found = {"arm_length": 250.0}
-    for i, azimuth in enumerate(np.radians((90.0, 210.0, 330.0)), 1):
-        found |= {f"rail_x_{i}": radius * np.cos(azimuth), f"rail_y_{i}": radius * np.sin(azimuth)}
-    return found
+    sizes = arms(base_radius=radius, inner_arm=100.0, outer_arm=200.0, tcp_radius=40.0)
+    return sizes | azimuths(0.0, 120.0, 240.0)
 
 
 EDGES = {
@@ -50,7 +34,7 @@ EDGES = {
     ),
     "KinType12XY": (lambda s: {**TYPE_12, "link_length_5": 700.0 + s}, "link 5"),
     "DeltaP3CType3": (lambda s: delta(340.0 + s), "reach the plate"),
-    "TripodP3Z": (lambda s: rails(250.0 + s), "reach the plate"),
+    "TripodP3Z": (lambda s: rails(250.0, *around(250.0 + s)), "reach the plate"),
     "TripodLinear": (lambda s: {**UPRIGHT, "outer_radius": 460.0 + s}, "reach the plate"),
 }
 
@@ -67,26 +51,17 @@ def test_the_edge_of_what_can_be_assembled(name: str) -> None:
 
 
 TRIPOD = {"arm_length_1": 200.0, "arm_length_2": 450.0, "arm_1_radius": 140.0, "max_angle_ball_joint": 45.0}
-DELTA = {
-    f"{name}_{i}": v for name, v in (("base_radius", 140.0), ("inner_arm", 200.0), ("outer_arm", 450.0)) for i in "123"
-}
+DELTA = arms(base_radius=140.0, inner_arm=200.0, outer_arm=450.0)
 CARRIED = {"base_radius": 160.0, "arm_length": 240.0, "rod_length": 560.0, "plate_radius": 45.0}
-PLANAR = {"inner_arm": 250.0, "outer_arm": 500.0, "displacement": 120.0, "tcp_displacement": 40.0}
+PLANAR = five_bar(250.0, 500.0, 120.0, 40.0)
 TWO_ARMS = {"base_distance": 140.0} | {f"{n}_length_{i}": s for i in "12" for n, s in (("arm", 200.0), ("rod", 260.0))}
 
 
-def placed(*points: tuple[float, float]) -> dict[str, float]:
-    """Rods of 269, and vertical rails at these points."""
-    found = {f"rail_{c}_{i}": v for i, point in enumerate(points, 1) for c, v in zip("xy", point, strict=True)}
-    return {"arm_length": 269.0} | found
-
-
-RAILS = placed((0.0, 150.0), (-130.0, -75.0), (130.0, -75.0))
+RAILS = rails(269.0, (0.0, 150.0), (-130.0, -75.0), (130.0, -75.0))
 SMALL = {"tcp_displacement": 20.0}
-LINE = placed((100.0, 10.0), (200.0, 20.0), (300.0, 30.0))
-WIDE = {f"azimuth_{i}": a for i, a in zip("123", (0.0, 90.0, -90.0), strict=True)}
-WIDE |= {f"base_radius_{i}": 9000.0 for i in "123"}
-EVEN = {f"{name}_{i}": v for i in (1, 2, 3) for name, v in (("azimuth", 120.0 * i), ("base_radius", 700.0))}
+LINE = rails(269.0, (100.0, 10.0), (200.0, 20.0), (300.0, 30.0))
+WIDE = azimuths(0.0, 90.0, -90.0) | arms(base_radius=9000.0)
+EVEN = azimuths(120.0, 240.0, 360.0) | arms(base_radius=700.0)
 STRUTS = {what: anchored(what)[0][0] for what in ("cable", "strut")}
 IMPOSSIBLE = {
     "a plate smaller than its joints": (
@@ -104,7 +79,7 @@ IMPOSSIBLE = {
     "a plate larger than rail 3": ("Kin_Tripod_P3Z", RAILS, {**SMALL, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"),
     "cables on a line": ("Softkin_ThreeCables", STRUTS["cable"], {"cable_3_y": 0.0}, "line"),
     "struts on a line": ("Softkin_Tripod_Struts", STRUTS["strut"], {"strut_3_y": 0.0}, "line"),
-    "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, {f"azimuth_{i}": 30.0 for i in "123"}, "azimuth"),
+    "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, arms(azimuth=30.0), "azimuth"),
     "an upper arm too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_1": 501.0}, "link 1"),
     "a forearm too long behind": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_3": 701.0}, "link 3"),
     "a rod too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_4": 501.0}, "link 4"),
@@ -116,7 +91,7 @@ IMPOSSIBLE = {
     "two arms the same way": (
         "Kin_Delta_P3C_Type3",
         DELTA,
-        {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0},
+        azimuths(0.0, 90.0, 90.0),
         "azimuth",
     ),
     "drives too far apart": ("Kin_Delta_P3C_Type3", DELTA, WIDE, "reach the plate"),
@@ -148,9 +123,7 @@ def test_the_ends_of_what_is_possible(what: str) -> None:
 
 
 def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
-    softkin.TripodLinear(
-        outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0
-    )
+    softkin.TripodLinear(**UPRIGHT | {"outer_radius": 4000.0, "rail_angle": 30.0})
 
 
 def do_meet(centres: Array, radii: Array) -> NDArray[np.bool_]:
@@ -168,9 +141,7 @@ def do_meet(centres: Array, radii: Array) -> NDArray[np.bool_]:
 
 
 def test_discs_that_meet() -> None:
-    """Against the smallest largest excess over a fine grid of points, on random discs of all sizes, and on discs of
-    which every two meet around a gap.
-    """
+    """Against the least excess over a grid of points: random discs, and discs of which every two meet around a gap."""
     rng = np.random.default_rng(8)
     grid = np.stack(np.meshgrid(np.linspace(-3, 3, 181), np.linspace(-3, 3, 181)), axis=-1).reshape(-1, 2)
     drawn = [(rng.uniform(-1, 1, (3, 2)), rng.uniform(0.05, 1.5, 3)) for _ in range(60)]

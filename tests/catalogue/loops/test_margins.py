@@ -1,5 +1,4 @@
-"""Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically; nothing of the derivation
-is read."""
+"""Margins against the matrices of the closure, A x' + B q' = 0, differentiated numerically."""
 
 import numpy as np
 import pytest
@@ -50,9 +49,7 @@ def test_type_1_margins_are_those_of_b_and_type_2_of_a(machines: tuple[LoopMachi
 
 @pytest.mark.long
 def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine, ...]) -> None:
-    """Straight on until the slot is refused: there a leg is stretched, or a ball joint at its end,
-    or the plate lost.
-    """
+    """Straight on until the slot is refused: a leg is stretched, a ball joint at its end, or the plate lost."""
     rng = np.random.default_rng(4)
     reasons = []
     for machine in machines:

@@ -44,10 +44,7 @@ def mechanism_named(name: str) -> Mechanism:
 
 
 def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mechanism]:
-    """The class of a mechanism from changed text: its scalar programs, and where they hold the same all others.
-
-    Each change must be somewhere, and the first in the scalar programs.
-    """
+    """The class from changed text. Each change must be somewhere, and the first in the scalar programs."""
     original = softkin.catalogue()[mechanism.name]
     short = original.__module__.rpartition(".")[2]
     names = original.__module__, f"softkin._array_programs.{short}", f"softkin._unrolled.{short}"
@@ -59,9 +56,7 @@ def spoiled(mechanism: Mechanism, *changes: tuple[str, str]) -> type[softkin.Mec
         assert any(right in text for text in texts), f"{short} has no {right!r}"
     texts = [_changed(text, changes) for text in texts]
     texts[1] = re.sub(rf"\b({'|'.join(constants)})\b", r"k.\1", texts[1])
-    scalar, arrays, unrolled = (
-        _loaded(f"{name} with {changes[0][1]}", text) for name, text in zip(names, texts, strict=True)
-    )
+    scalar, arrays, unrolled = (_loaded(f"{n} with {changes[0][1]}", t) for n, t in zip(names, texts, strict=True))
     scalar.__dict__["unrolled"] = unrolled.unrolled
     found: type[softkin.Mechanism] = getattr(scalar, original.__name__)
     programs = arrays.ArrayPrograms  # type: ignore[attr-defined]
@@ -191,9 +186,7 @@ def the_test(fault: Fault) -> Callable[[tuple[LoopMachine, ...]], None]:
 
 
 def crossings_given_to(machines: tuple[LoopMachine, ...]) -> list[Crossing]:
-    """The ways that machines without a fault find, for these to go: none is found by a machine that takes both modes
-    for one.
-    """
+    """The ways that sound machines find: none is found by a machine that takes both modes for one."""
     ways = zip(machines, map(crossing_of, loop_machines_of(machines[0].mechanism)), strict=True)
     found = [(machine, way) for machine, way in ways if way is not None]
     if not found:

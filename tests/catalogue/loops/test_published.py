@@ -4,29 +4,19 @@ import numpy as np
 import pytest
 import softkin
 
+from tests.catalogue.loops import edges
+
 IDENTITY = np.eye(3)
 
 
 def delta(azimuths: tuple[float, ...], **sizes: float) -> softkin.Mechanism:
     """A delta with three equal legs in these directions."""
-    given = {f"{name}_{i}": value for name, value in sizes.items() for i in (1, 2, 3)}
-    return softkin.DeltaP3CType3(**given, **{f"azimuth_{i}": a for i, a in enumerate(azimuths, 1)})
-
-
-def linear_delta(radius: float, *azimuths: float) -> softkin.Mechanism:
-    """A delta with three rails around a circle."""
-    rails = [(radius * np.cos(turn), radius * np.sin(turn)) for turn in np.radians(azimuths)]
-    given = {f"rail_{c}_{i}": float(v) for i, rail in enumerate(rails, 1) for c, v in zip("xy", rail, strict=True)}
-    return softkin.TripodP3Z(arm_length=269.0, **given)
-
-
-def type_12(*links: float, swap_xy: bool = False) -> softkin.Mechanism:
-    return softkin.KinType12XY(**{f"link_length_{i}": v for i, v in enumerate(links, 1)}, swap_xy=swap_xy)
+    return softkin.DeltaP3CType3(**edges.arms(**sizes), **edges.azimuths(*azimuths))
 
 
 LINUXCNC = delta((-90.0, 30.0, 150.0), base_radius=10.0, inner_arm=10.0, outer_arm=14.0, tcp_radius=6.0)
 T_LAYOUT = delta((0.0, 90.0, -90.0), base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=45.0)
-RAILS = linear_delta(130.25, 90.0, 210.0, 330.0)
+RAILS = softkin.TripodP3Z(**edges.rails(269.0, *edges.around(130.25)))
 FIRST, SECOND = (300, 350, 100, 300, 100), (300, 350, 110, 280, 90)
 PUBLISHED = [
     (LINUXCNC, (30, 30, 30), (0, 0, -10.976451095529), 1e-11),
@@ -58,10 +48,10 @@ def test_deltas_of_linuxcnc_and_klipper(
 
 @pytest.mark.parametrize(("links", "axes", "position"), FIVE_BARS)
 def test_type_12(links: tuple[float, ...], axes: tuple[float, ...], position: tuple[float, ...]) -> None:
-    robot = type_12(*links)
+    robot = softkin.KinType12XY(**edges.links(*links))
     np.testing.assert_allclose(robot.forward(axes)[0].position[:2], position, atol=2e-8)
     np.testing.assert_allclose(robot.inverse(((*position, 0.0), IDENTITY)), axes, atol=1e-7)
-    mirrored = type_12(*links, swap_xy=True)
+    mirrored = robot.changed(swap_xy=True)
     np.testing.assert_allclose(mirrored.forward(axes)[0].position[:2], position[::-1], atol=2e-8)
 
 

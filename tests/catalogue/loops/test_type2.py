@@ -25,9 +25,7 @@ HALVINGS = 60
 
 @dataclass(frozen=True)
 class Crossing:
-    """A line from a pose of a machine to one of its other assembly mode; every leg reaches all of it in one working
-    mode.
-    """
+    """A line from a pose to one of the other assembly mode; every leg reaches all of it in one working mode."""
 
     machine: LoopMachine
     unlimited: softkin.Mechanism
@@ -97,10 +95,7 @@ NO_TURN = np.eye(3)
 
 @pytest.fixture
 def crossings(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> list[Crossing]:
-    """A way through the singularity for every machine that has one in a single working mode.
-
-    The links of the nominal type 12 add up, 110 + 280 = 300 + 90: all its type 2 singularities are of type 1 too.
-    """
+    """A way through the singularity for every machine with one; of type 12 as drawn they are of type 1 too."""
     found = [c for c in map(crossing_of, few(machines)) if c is not None]
     assert len(found) == (1 if mechanism.name == "MC_KIN_TYPE_12_XY" else 2)
     return found
@@ -142,9 +137,7 @@ def test_the_closure_itself_is_lost_there(crossings: list[Crossing]) -> None:
         beyond = asked(line.other, behind, line.configuration, here)
         assert beyond is not None
         assert np.abs(here - beyond).max() < 1e-4 * line.machine.reach
-        values = [
-            determinant(line.machine, a, p) for a, p in ((line.axes, line.start), (here, before), (beyond, behind))
-        ]
+        values = [determinant(line.machine, *p) for p in ((line.axes, line.start), (here, before), (beyond, behind))]
         assert np.abs(values[1:]).max() < 1e-5 * abs(values[0])
         assert np.sign(values[0]) == np.sign(values[1]) == -np.sign(values[2])
 
@@ -236,9 +229,7 @@ def test_the_other_assembly_mode_is_refused(machines: tuple[LoopMachine, ...]) -
 
 
 def test_forward_has_one_solution_a_side(machines: tuple[LoopMachine, ...]) -> None:
-    """Newton's method from many places finds two poses at regular axis values, and each assembly
-    mode is one of them.
-    """
+    """Newton's method finds two poses at regular axis values, and each assembly mode is one of them."""
     rng = np.random.default_rng(6)
     for machine in machines:
         assembly = machine.mechanism.assembly

@@ -8,7 +8,7 @@ import softkin
 
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.closure import Array
-from tests.catalogue.coupling.parts import ORIENTATIONS, orientation_parts
+from tests.catalogue.coupling.parts import EVERYTHING, ORIENTATIONS, orientation_parts
 from tests.catalogue.driven_machines import driven_machines_of
 from tests.catalogue.loop_machines import loop_machines_of
 from tests.catalogue.machines import machines_of
@@ -52,9 +52,14 @@ def matrices(positions: Array, rotations: Array) -> Array:
 
 
 @cache
-def sample_of(mechanism: Mechanism) -> Sample:
-    """A random machine of the mechanism, off its nominal dimensions, with offsets."""
+def sample_of(mechanism: Mechanism | str) -> Sample:
+    """A random machine of the mechanism, off its nominal dimensions, with offsets; or a coupling."""
     rng = np.random.default_rng(71)
+    if isinstance(mechanism, str):
+        robot = couplings()[mechanism]
+        axes = rng.uniform(20.0, 80.0, (POSES, len(robot.AXES)))
+        flange = matrices(*robot.forward_batch(axes)[:2])
+        return Sample(EVERYTHING[robot.orientation_part.NAME], robot, axes, flange, 600.0)
     if mechanism in ORIENTATIONS:
         one = orientation_parts(mechanism)[-1]
         axes = one.draw(POSES, rng)
@@ -73,7 +78,7 @@ def sample_of(mechanism: Mechanism) -> Sample:
     return Sample(mechanism, machine.robot, axes, matrices(*machine.closure.poses(axes)), machine.reach)
 
 
-def couplings() -> dict[str, softkin.Mechanism]:
+def couplings() -> dict[str, softkin.Coupled]:
     """Couplings of every kind of flange, and one that is a tool."""
     scara = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0, offset_a1=7.0)
     arm_of_three = softkin.PosRRR(d1=350.0, a1=80.0, a2=310.0, d3=50.0, a3=30.0, d4=290.0)

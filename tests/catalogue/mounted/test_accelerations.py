@@ -10,8 +10,8 @@ from softkin import Frame, Status
 
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.closure import Array
-from tests.catalogue.mounted.machines import BASE, EVERY, Sample, couplings, sample_of
-from tests.catalogue.mounted.test_velocities import ARM, EVERY_COUPLING, EVERY_MECHANISM, STRETCHED, both
+from tests.catalogue.mounted.machines import EVERY, Sample, couplings, sample_of
+from tests.catalogue.mounted.test_velocities import ARM, EVERY_MECHANISM, EVERY_ONE, STRETCHED, both
 from tests.catalogue.refusals import refusal
 
 pytestmark = pytest.mark.long("Hexapod")
@@ -64,8 +64,8 @@ def confirm_rates(robot: softkin.Mechanism, axes: Array, reach: float) -> None:
     assert many[0] == pytest.approx(still * accelerations, abs=1e-6 * (1.0 + np.abs(accelerations).max()))
 
 
-@EVERY_MECHANISM
-def test_the_rate_of_the_twist_is_its_derivative(mechanism: Mechanism) -> None:
+@EVERY_ONE
+def test_the_rate_of_the_twist_is_its_derivative(mechanism: Mechanism | str) -> None:
     sample = sample_of(mechanism)
     for robot in (*both(sample), sample.robot.in_radians().in_degrees()):
         for axes in sample.axes[:2]:
@@ -75,26 +75,6 @@ def test_the_rate_of_the_twist_is_its_derivative(mechanism: Mechanism) -> None:
     axes = sample.axes[0] / np.where(units_of(sample.robot) == 1.0, 1.0, units_of(sample.robot))
     expected = sample.robot.twist_rate(sample.axes[0], velocities, accelerations)
     assert turned.twist_rate(axes, velocities, accelerations) == pytest.approx(expected, abs=1e-9 * sample.reach)
-
-
-@EVERY_COUPLING
-def test_couplings_accelerate_as_their_twist_changes(name: str) -> None:
-    robot = couplings()[name]
-    axes = np.random.default_rng(1).uniform(20.0, 80.0, len(robot.AXES))
-    for one in (robot, robot.with_base(BASE), robot.with_tool(Frame((0.0, 0.0, 9.0)))):
-        velocities, accelerations = motion_of(one, 600.0)
-        units = units_of(one)
-        found = one.twist_rate(axes, velocities, accelerations)
-
-        def twist(time: float, one: softkin.Mechanism = one, units: Array = units) -> Array:
-            moving = motion_of(one, 600.0)
-            moved = axes + units * (moving[0] * time + moving[1] * time**2 / 2)
-            return np.array(one.twist(moved, moving[0] + moving[1] * time))
-
-        assert np.abs(np.array(found) - rate(twist)).max() < 1e-4
-        many, statuses = one.axis_accelerations_batch([axes], velocities, found)
-        assert statuses.tolist() in ([Status.OK], [Status.IMPOSSIBLE])
-        assert statuses[0] or many[0] == pytest.approx(accelerations, abs=1e-6 * np.abs(accelerations).max())
 
 
 DEVIATIONS = {"a1_tilt_x": 0.1, "a2_shift_y": 1.0, "a3_gain": 0.01, "tool_b": 1.0, "base_a": 0.5}

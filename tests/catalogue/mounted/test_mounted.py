@@ -16,6 +16,7 @@ from tests.catalogue.mounted.machines import BASE, EVERY, LATERAL, TOOL, Sample,
 from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal, status_of
 from tests.catalogue.search.arms import frame as frame_of_arm
+from tests.orthonormal import turned
 from tests.text.samples import tilted
 
 pytestmark = [pytest.mark.long("Hexapod"), pytest.mark.broad]
@@ -111,17 +112,12 @@ def test_the_documented_cases() -> None:
 
 @EVERY_MECHANISM
 def test_the_nearest_rotation_is_that_of_the_flange(mechanism: Mechanism) -> None:
-    """A rotation out of reach: the flange takes the nearest of all its turns about its axis. Where x and y are fixed a
-    tool aside is then elsewhere.
-    """
+    """A rotation out of reach: the flange takes the nearest of all its turns about its axis."""
     if mechanism.task.turning is not Turning.ABOUT_Z or not mechanism.task.position.startswith("xy"):
         return
     sample, rng = sample_of(mechanism), np.random.default_rng(3)
     robot = sample.robot.with_tool(TOOL).with_base(BASE)
-    around = np.radians(np.linspace(0.0, 360.0, 721))
-    turns = np.zeros((721, 3, 3))
-    turns[:, 0, 0] = turns[:, 1, 1] = np.cos(around)
-    turns[:, 1, 0], turns[:, 0, 1], turns[:, 2, 2] = np.sin(around), -np.sin(around), 1.0
+    turns = turned(2, np.radians(np.linspace(0.0, 360.0, 721)))
     zero = np.array(sample.robot.orientation_image().rotation)
     answered = 0
     for axes in sample.axes.tolist():

@@ -15,7 +15,8 @@ from tests.catalogue.refusals import refusal
 pytestmark = pytest.mark.long("Hexapod")
 
 EVERY_MECHANISM = pytest.mark.parametrize("mechanism", EVERY, ids=lambda m: m.name)
-EVERY_COUPLING = pytest.mark.parametrize("name", couplings())
+EVERY_ONE = pytest.mark.parametrize("mechanism", (*EVERY, *couplings()), ids=lambda m: getattr(m, "name", m))
+"""Mechanisms, and couplings by their names."""
 STEP = 1e-5
 """Radians, or parts of the reach."""
 
@@ -63,8 +64,8 @@ def matrix_of(robot: softkin.Mechanism, axes: Array) -> Array:
     return np.reshape(robot.jacobian(axes), (len(robot.JACOBIAN_ROWS), len(robot.AXES)))
 
 
-@EVERY_MECHANISM
-def test_the_jacobian_is_the_difference_of_forward(mechanism: Mechanism) -> None:
+@EVERY_ONE
+def test_the_jacobian_is_the_difference_of_forward(mechanism: Mechanism | str) -> None:
     """Every row, bare and mounted; a batch is the same; statuses and margins of garbage."""
     sample = sample_of(mechanism)
     for robot in both(sample):
@@ -88,24 +89,8 @@ def test_the_jacobian_is_the_difference_of_forward(mechanism: Mechanism) -> None
             assert np.isnan(matrices[-1]).all() and singular[-1] and np.isnan(margins[-1]).all()
 
 
-@EVERY_COUPLING
-def test_couplings_move_as_their_forward_kinematics(name: str) -> None:
-    """The Jacobian of a coupling and its batch, bare, with a tool, and on a base."""
-    robot = couplings()[name]
-    axes = np.random.default_rng(1).uniform(20.0, 80.0, (4, len(robot.AXES)))
-    for one in (robot, robot.with_base(BASE), robot.with_tool(Frame((0.0, 0.0, 9.0)))):
-        matrices, statuses = one.jacobian_batch(axes)
-        assert (statuses == Status.OK).all()
-        singular, margins = one.singularity_batch(axes)
-        for row, matrix, flag, margin in zip(axes, matrices, singular, margins, strict=True):
-            assert np.abs(matrix - rows_of(one, row, 600.0)).max() < 1e-4
-            assert np.abs(matrix - one.jacobian(row)).max() < 1e-9
-            assert flag == one.singularity(row).is_singular
-            assert list(margin) == pytest.approx(list(one.singularity(row).margins.values()), abs=1e-12)
-
-
-@EVERY_MECHANISM
-def test_velocities_of_axes_and_frame_are_inverse(mechanism: Mechanism) -> None:
+@EVERY_ONE
+def test_velocities_of_axes_and_frame_are_inverse(mechanism: Mechanism | str) -> None:
     """`axis_velocities` is the inverse of `twist`, with the velocities of held axes given; damping changes little."""
     sample = sample_of(mechanism)
     rng = np.random.default_rng(2)
@@ -170,10 +155,8 @@ def test_a_motion_that_the_axes_do_not_have_is_refused() -> None:
     assert robot.axis_velocities(axes, (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)) == pytest.approx(
         robot.axis_velocities(axes, (1.0, 2.0, 3.0, 0.0, 0.0, 0.5), damping=1e-9, length=300.0), abs=1e-6
     )
-    assert (
-        refusal(robot.axis_velocities, axes, (1.0, 2.0, 3.0, 0.0, 5.0, 0.5), says="turn y is missed")
-        is Status.UNREACHABLE
-    )
+    tilted = (1.0, 2.0, 3.0, 0.0, 5.0, 0.5)
+    assert refusal(robot.axis_velocities, axes, tilted, says="turn y is missed") is Status.UNREACHABLE
 
 
 def test_the_velocity_of_a_held_axis_is_the_caller_s() -> None:

@@ -6,6 +6,8 @@ import numpy as np
 import softkin
 from numpy.typing import NDArray
 
+from tests.orthonormal import turned
+
 Array = NDArray[np.float64]
 IRB_2400 = {"d1": 615.0, "a1": 100.0, "a2": 705.0, "a3": 135.0, "d4": 755.0, "d6": 85.0}
 """Dimensions of a known robot, which has a spherical wrist."""
@@ -29,13 +31,8 @@ def frame(axes: Array, lateral: float) -> Array:
 
 
 def turn(axis: int, angle: Array) -> Array:
-    """Turns about a coordinate axis."""
-    angle = np.asarray(angle)
-    matrix, (i, j) = np.zeros((*angle.shape, 4, 4)), ((axis + 1) % 3, (axis + 2) % 3)
-    matrix[..., range(4), range(4)] = 1.0
-    matrix[..., i, i] = matrix[..., j, j] = np.cos(angle)
-    matrix[..., j, i] = np.sin(angle)
-    matrix[..., i, j] = -matrix[..., j, i]
+    matrix = np.tile(np.eye(4), (*np.shape(angle), 1, 1))
+    matrix[..., :3, :3] = turned(axis, angle)
     return matrix
 
 
@@ -78,6 +75,5 @@ def _apart(here: Array, there: Array) -> Array:
     spin = np.stack([turned[..., i, j] - turned[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1) / 2
     length = np.maximum(np.linalg.norm(spin, axis=-1, keepdims=True), 1e-9)
     is_far = np.trace(turned, axis1=-2, axis2=-1)[..., None] < 1.0  # beyond a right angle the sine falls again
-    return np.concatenate(
-        [(there[..., :3, 3] - here[..., :3, 3]) / 1000.0, np.where(is_far, spin / length, spin)], axis=-1
-    )
+    moved = (there[..., :3, 3] - here[..., :3, 3]) / 1000.0
+    return np.concatenate([moved, np.where(is_far, spin / length, spin)], axis=-1)

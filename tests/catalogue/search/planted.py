@@ -1,5 +1,4 @@
-"""Poses at which a root search is difficult: A4 near 0 and 180 degrees, the elbow nearly stretched or folded, any
-offset."""
+"""Poses at which a root search is difficult: A4 near 0 and 180 degrees, a straight elbow, any offset."""
 
 from dataclasses import dataclass
 

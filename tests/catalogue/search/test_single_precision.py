@@ -45,10 +45,8 @@ def test_beyond_that_it_is_refused(lateral: float) -> None:
     block = _block(MECHANISM, lateral)
     configuration = robot.forward(AXES)[1]
     for matrix in (*too_far_off(turn), *mirrored(turn)):
-        assert (
-            refusal(robot.inverse, (position, matrix), reference=AXES, says=r"columns not|right-handed")
-            is Status.BAD_INPUT
-        )
+        says = r"columns not|right-handed"
+        assert refusal(robot.inverse, (position, matrix), reference=AXES, says=says) is Status.BAD_INPUT
         assert {s.status for s in robot.inverse_all((position, matrix), AXES)} == {Status.BAD_INPUT}
         assert robot.inverse_batch([position], [matrix])[1].tolist() == [Status.BAD_INPUT]
         assert block.inverse(position, matrix.tolist(), configuration, AXES.tolist())[0] == BAD_INPUT

@@ -1,6 +1,4 @@
-"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform. What the hexapod
-alone can be asked, whose legs are joints, is in `hexapod`.
-"""
+"""Every test that asks for a mechanism or its machines runs for every loop that turns its platform."""
 
 import pytest
 

@@ -56,9 +56,7 @@ def test_every_pose_around_home_is_found_in_the_configuration_of_home(machines: 
 
 @pytest.mark.slow("Hexaglide")
 def test_the_inverse_accepts_what_is_in_the_mode_of_home(machines: tuple[TurningMachine, ...]) -> None:
-    """In every slot: the sign of det A, and its least size, by definition; a slot that is refused is in the other mode,
-    too near, or out of reach.
-    """
+    """In every slot: the sign of det A, and its least size; what is refused is in the other mode or out of reach."""
     for machine in machines:
         free = machine.changed(min_type2_margin=0.0, check_forward=False)
         near = machine.changed(check_forward=False)
@@ -109,9 +107,7 @@ def test_a_home_pose_out_of_reach_or_singular_is_refused(machines: tuple[Turning
 
 
 def test_a_start_leads_to_the_pose_beside_it(machines: tuple[TurningMachine, ...]) -> None:
-    """In every configuration that the inverse accepts, also where Newton's method does not come from home. A start that
-    is tilted counts by its heading.
-    """
+    """In every configuration that the inverse accepts; a start that is tilted counts by its heading."""
     for machine in machines:
         positions, rotations = machine.closure.around_home(12, np.random.default_rng(53))
         axes, statuses = machine.robot.inverse_all_batch(positions, rotations)[:2]
@@ -129,10 +125,8 @@ def test_a_start_upside_down_has_no_heading(mechanism: Mechanism, machines: tupl
     """Of a platform that turns about z, a start that is upside down is refused."""
     if len(machines[0].closure.axes_of_turn) == 1:
         axes = tuple(machines[0].draw(1, np.random.default_rng(1))[0])
-        assert (
-            refusal(machines[0].robot.forward, axes, start=((0.0, 0.0, 0.0), np.diag((1.0, -1.0, -1.0))))
-            is Status.BAD_INPUT
-        )
+        start = (0.0, 0.0, 0.0), np.diag((1.0, -1.0, -1.0))
+        assert refusal(machines[0].robot.forward, axes, start=start) is Status.BAD_INPUT
 
 
 def test_legs_numbered_the_other_way_round(machines: tuple[TurningMachine, ...]) -> None:
@@ -164,9 +158,7 @@ def _axis(part: str, legs: int) -> str:
 
 
 def test_a_machine_that_stands_far_away(machines: tuple[TurningMachine, ...]) -> None:
-    """Its base and its home shifted by a hundred times its size: the same axes for poses that are shifted as much. What
-    turns about the origin is moved by a base.
-    """
+    """Its base and its home shifted by a hundred times its size: the same axes for shifted poses."""
     machine = machines[1]
     shift = 100.0 * round(machine.reach)
     ours = {n for n in machine.given if n.startswith(("base_", "rail_", "home_")) and n.endswith("_y")}

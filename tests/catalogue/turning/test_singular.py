@@ -19,9 +19,7 @@ TILTS = np.array([[np.cos(angle), np.sin(angle), 0.0] for angle in np.radians((3
 
 
 def at_its_end(machine: TurningMachine) -> tuple[TurningMachine, np.ndarray, np.ndarray]:
-    """The machine with a first rod that just reaches a pose beside home, and that pose: the one of many around home
-    that is farthest from where the rod's other end can be.
-    """
+    """The machine with a first rod that just reaches a pose beside home, and that pose."""
     positions, rotations = machine.closure.around_home(60, np.random.default_rng(67), size=AWAY)
     span = _across(machine, positions, rotations)
     home = _across(machine, machine.closure.home_position[None], machine.closure.home_rotation[None])[0]
@@ -32,9 +30,7 @@ def at_its_end(machine: TurningMachine) -> tuple[TurningMachine, np.ndarray, np.
 
 
 def _across(machine: TurningMachine, positions: np.ndarray, rotations: np.ndarray) -> np.ndarray:
-    """The least distance between the first rod's joints, wherever its own joint is: the squared distance is a sine of
-    an angle, and a parabola of a length.
-    """
+    """The least distance between the first rod's joints: its square is a sine of an angle, a parabola of a length."""
     first, joints = machine.mechanism.rods[0], np.zeros((len(positions), len(machine.mechanism.joints)))
     ends = [p - b for p, b in zip(first.plate, first.base, strict=True)]
 
@@ -78,10 +74,7 @@ def test_at_the_end_of_a_leg_both_branches_answer_the_same(machines: tuple[Turni
 
 @pytest.mark.slow("Hexaglide", "Planar")
 def test_a_path_into_a_type_2_singularity_is_stopped_before(machines: tuple[TurningMachine, ...]) -> None:
-    """The platform turns about z, or tilts where the tool's direction alone is followed, in the configuration of home,
-    until a leg ends or nothing holds it: until then it is in the mode of the machine, and what stops it there is the
-    margin, which has become small.
-    """
+    """The platform turns, or tilts, until a leg ends or nothing holds it: what stops it there is the margin."""
     reasons: list[str] = []
     for machine in machines:
         own = home_slot(machine)

@@ -12,9 +12,7 @@ from tests.orthonormal import about
 Array = NDArray[np.float64]
 GIVEN = {p.name: p.nominal for p in named("Softkin_RodWrist").parameters}
 ROBOT = softkin.catalogue()["Softkin_RodWrist"](**GIVEN, check_forward=False, min_type2_margin=0.0)
-MOTORS, JOINTS = (
-    np.array([[GIVEN[f"{body}_{k}_{c}"] for c in "xyz"] for k in (1, 2)]) for body in ("base", "platform")
-)
+MOTORS, JOINTS = (np.array([[GIVEN[f"{end}_{k}_{c}"] for c in "xyz"] for k in (1, 2)]) for end in ("base", "platform"))
 CRANKS, RODS = (np.array([GIVEN[f"{body}_length_{k}"] for k in (1, 2)]) for body in ("crank", "rod"))
 POSES, STARTS, PASSES, STEP = 12, 12, 60, 1e-6
 

@@ -1,5 +1,4 @@
-"""Ranges around one turn, in both languages: a path is refused at their ends and never jumps; a turn inside can be
-named."""
+"""Ranges around one turn, in both languages: a path is refused at their ends and never jumps."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -92,9 +91,7 @@ def ask(axis: TurningAxis, limits: Range, caller: Caller, value: float, referenc
 
 
 def _check_refusal(axis: TurningAxis, limits: Range, caller: Caller, at: float, asked: Asked) -> None:
-    """Where another turn is inside, the reason says that the turn refuses, and the byte is
-    answered; else it does not.
-    """
+    """Where another turn is inside, the reason says so, and the byte is answered; else it does not."""
     inside = limits.inside(at)
     reason, missing, turn = caller.why(asked)
     assert missing > 0.0
