@@ -19,7 +19,6 @@ def rodrigues(axis: ArrayLike, angle: float) -> Array:
 
 
 def about(axis: int, degrees: float) -> Array:
-    """The rotation about a coordinate axis."""
     turned, (i, j) = np.eye(3), ((axis + 1) % 3, (axis + 2) % 3)
     turned[i, i] = turned[j, j] = np.cos(np.radians(degrees))
     turned[j, i] = np.sin(np.radians(degrees))
@@ -47,7 +46,6 @@ def repaired(matrix: Array) -> Array:
 
 
 def single(matrix: Array) -> Array:
-    """The matrix rounded to single precision."""
     return matrix.astype(np.float32).astype(np.float64)
 
 

@@ -80,7 +80,6 @@ BROKEN: dict[str, tuple[str, str, str]] = {
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A catalogue of one correct mechanism."""
     mechanisms = tmp_path / "mechanisms"
     mechanisms.mkdir()
     (mechanisms / "right.py").write_text(SCARA.read_text().replace("Kin_Scara4_ZCcoupled_Type1", "Kin_Right"))
@@ -99,7 +98,6 @@ def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
 @pytest.mark.slow("no root has", "under-constrained")
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
-    """A broken description is refused with one message that names file and fault."""
     old, new, expected = BROKEN[what]
     text = SCARA.read_text()
     assert text.count(old) == 1
@@ -136,7 +134,6 @@ def test_two_classes_with_one_name(folder: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_no_traceback_and_exit_status_1(folder: Path) -> None:
-    """An error ends the command with status 1 and without a traceback."""
     (folder / "broken.py").write_text("from derive.mechanism import nothing\n")
     command = [sys.executable, "-m", "derive", "generate", "--mechanisms", str(folder), "--output", str(folder / "out")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -148,7 +145,6 @@ def test_no_traceback_and_exit_status_1(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Generating removes files that no mechanism gives, and checking reports them."""
     output = folder.parent / "generated"
     options = ("--mechanisms", str(folder), "--output", str(output))
     assert main(["generate", *options]) == 0
@@ -167,7 +163,6 @@ def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: py
 
 
 def test_a_folder_with_other_files_is_never_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with files that were not generated is refused as output."""
     message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent)
     assert "holds 'mechanisms', which was not generated: it is not replaced" in message
     assert folder.exists()
@@ -208,7 +203,6 @@ def test_what_was_derived_travels_between_processes_unchanged() -> None:
 
 
 def test_by_products_are_no_orphans(tmp_path: Path) -> None:
-    """Files that Python tools write are not reported as orphans."""
     for name in ("a.py", "softkin.egg-info/PKG-INFO", "__pycache__/a.pyc", "build/lib/a.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")

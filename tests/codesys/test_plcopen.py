@@ -47,12 +47,10 @@ def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
 
 @pytest.mark.parametrize("name", [*UNITS, "softkin"])
 def test_valid(name: str) -> None:
-    """The file is valid by the schema of PLCopen."""
     assert errors((ROOT / f"{name}.xml").read_text(encoding="utf-8")) == []
 
 
 def test_the_schema_sees_what_is_wrong() -> None:
-    """The schema refuses a wrong keyword, a wrong element, and a missing attribute."""
     text = EVERYTHING.read_text(encoding="utf-8")
     for old, new in (('pouType="function"', 'pouType="routine"'), ("localVars", "lokalVars"), (' upper="3"', "")):
         assert errors(text.replace(old, new))
@@ -110,7 +108,6 @@ def _code(text: str) -> str:
 
 @pytest.mark.parametrize("unit", ["gantry/Softkin_Gantry2", "parallel/Kin_Hexapod", "polar/Kin_Crane"])
 def test_a_mechanism_alone_compiles(unit: str) -> None:
-    """The objects in the file of a mechanism compile without any other file."""
     read = wholes(parse(ROOT / f"{unit}.xml"))
     library = compile_st({name: whole.text() for name, whole in read.items()})
     assert unit.split("/")[1] in library.objects
@@ -250,7 +247,6 @@ def test_kinds_that_no_mechanism_has_yet(tmp_path: Path) -> None:
 
 
 def test_text_survives_whatever_is_in_it(tmp_path: Path) -> None:
-    """Text with any character of the markup comes out of the file unchanged."""
     code = "// a < b & c > d ]]> \"quoted\" 'single'\n  indented := TRUE;  // tail\n\nlast := 1;"
     one = Object("FUNCTION", "Odd", "FUNCTION Odd : BOOL\nVAR\n  last : INT := 1;  // a < b & 'c'\nEND_VAR", code)
     path = tmp_path / "odd.xml"

@@ -243,8 +243,6 @@ class HasSections:
 
 @node
 class _Object:
-    """What every object of a text has."""
-
     kind: str
     name: str
     pragmas: tuple[str, ...]
@@ -274,8 +272,6 @@ class PropertyDeclaration(Placed):
 
 @node
 class Block(_Object, HasSections):
-    """A FUNCTION_BLOCK or a PROGRAM."""
-
     extends: str | None
     implements: tuple[str, ...]
     sections: tuple[Section, ...]

@@ -199,7 +199,6 @@ class Layer:
         return Layer(universe, source)
 
     def whole(self) -> Source:
-        """The source with the globals."""
         source = Source(self.source.lines[:], self.source.places[:])
         globals_of(self.universe, source)
         return source

@@ -84,7 +84,6 @@ _READERS: dict[str, Callable[[Tree, Node], ast.Statement]] = {
 
 
 def parse(text: str, file: str) -> list[ast.Declaration]:
-    """All declarations of a text in their order."""
     refuse_words(text, file)
     return [declaration for piece in split(text, file) for declaration in _object(piece, file)]
 

@@ -19,7 +19,6 @@ def expression(tree: Tree, node: Node) -> ast.Expression:
 
 
 def part(tree: Tree, node: Node, name: str) -> ast.Expression:
-    """The expression of a field."""
     return expression(tree, field(node, name))
 
 

@@ -130,7 +130,6 @@ class Interface:
         return found or next((m for m in (base.method(name) for base in self.bases) if m is not None), None)
 
     def all(self) -> frozenset[Interface]:
-        """The interface and all it extends."""
         return frozenset({self}).union(*(base.all() for base in self.bases))
 
 

@@ -155,7 +155,6 @@ READ = {
 
 
 def reading(v: str, w: str) -> str:
-    """A function that hands two values on."""
     variables = "  x : LREAL; many : ARRAY[0..8] OF LREAL; f : SMC_Frame; p : POINTER TO ARRAY[0..8] OF LREAL;"
     constants = "  ONE : LREAL := 1.0; TABLE : ARRAY[0..8] OF LREAL := [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];"
     head = f"FUNCTION Probe : LREAL\nVAR CONSTANT\n{constants}\nEND_VAR\nVAR\n{variables}\nEND_VAR\n"
@@ -164,7 +163,6 @@ def reading(v: str, w: str) -> str:
 
 @pytest.mark.parametrize("name", READ)
 def test_a_constant_reference_needs_a_variable(name: str) -> None:
-    """A VAR_IN_OUT CONSTANT takes a variable, its member or its element, and nothing else."""
     assert "needs a variable" in refused(reading(*READ[name]))
 
 
@@ -317,6 +315,5 @@ def test_the_message_names_file_and_line() -> None:
 
 
 def test_the_line_of_a_member_is_right() -> None:
-    """A refusal inside a member names the line in the file, behind comments of several lines, too."""
     text = BLOCK.format(members="(* note\n *)\n" + method("\nnOwn := TRUE;"))
     assert refused(text).startswith("probe.st:10: ")

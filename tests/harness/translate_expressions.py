@@ -51,7 +51,6 @@ class Expressions:
         return False
 
     def _unchecked(self, node: ast.Expression) -> str:
-        """Source of a real operand whose test can wait."""
         given = self.facts.type_of[node]
         return literal(given.value, types.LREAL) if isinstance(given, types.IntegerLiteral) else self._raw(node)
 

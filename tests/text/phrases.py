@@ -71,8 +71,6 @@ def _spaced(parts: list[str]) -> str:
 
 
 class _Reader:
-    """Reads the tokens of one expression."""
-
     def __init__(self, tokens: list[str], seen: Keys) -> None:
         self.tokens, self.place, self.seen = tokens, 0, seen
 

@@ -33,7 +33,6 @@ def shape(text: str) -> str:
 
 
 def names(text: str) -> set[str]:
-    """Every name in a text."""
     return {match[0] for match in _WORDS.finditer(text) if _same(match[0]) == "n"}
 
 

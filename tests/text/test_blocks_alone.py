@@ -65,13 +65,11 @@ def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[
 
 
 def test_the_number_of_axes(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """NumAxes is the number of joints of the mechanism."""
     for one in serial_pairs:
         assert one.controller.block.get("NumAxes") == len(one.mechanism.joints)
 
 
 def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """A block is a set of methods: its body is empty."""
     one = serial_pairs[1]
     fields = [v.name for section in one.library.objects[one.mechanism.block_name].sections for v in section.variables]
     before = [getattr(one.controller.block, name) for name in fields]
@@ -176,13 +174,11 @@ EVERYWHERE = (
 
 
 def test_every_loop_is_here() -> None:
-    """Every mechanism with rods is compared."""
     assert len(LOOPS) == 19
 
 
 @pytest.mark.parametrize("mechanism", POSITION_KINEMATICS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
-    """Every public method in the text of a block is compared."""
     library = compiled(mechanism)
     block, base = library.objects[mechanism.block_name], library.objects["Softkin_Kinematics"]
     own, inherited = ([m.name for m in b.methods if m.access == "PUBLIC"] for b in (block, base))
@@ -234,7 +230,6 @@ def test_every_block_knows_its_orientation(pairs: tuple[Pair, ...]) -> None:
 
 @pytest.mark.parametrize("mechanism", [m for m in ORIENTATIONS if m.joints], ids=lambda m: m.name)
 def test_orientation_blocks_answer_or_say_impossible(mechanism: Mechanism) -> None:
-    """A wrist knows its orientation; it has no offset of its own."""
     library = compiled(mechanism)
     controller = Controller(library, mechanism)
     assert controller.initialise({p.name: p.nominal for p in mechanism.parameters}) == OK
@@ -275,5 +270,4 @@ def test_a_call_costs_no_more_than_promised(kind: Kind) -> None:
 
 
 def test_every_text_by_hand_is_measured() -> None:
-    """No text stands in the folder without being run."""
     assert {path.stem for path in FOLDER.glob("*.st")} == {kind.by_hand for kind in KINDS}

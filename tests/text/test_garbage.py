@@ -89,7 +89,6 @@ def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
-    """Garbage in all arguments is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -103,7 +102,6 @@ def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_what_is_written(pairs: tuple[Pair, ...]) -> None:
-    """What a variable holds before it is written has no influence."""
     for one in pairs[1:2]:
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -233,7 +231,6 @@ INSIDE = 0.02
 
 
 def rows(matrix: np.ndarray) -> Rows:
-    """A matrix as rows of plain numbers."""
     return tuple(map(tuple, matrix.tolist()))
 
 
@@ -273,7 +270,6 @@ def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...])
 
 
 def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """GetFlangeOrientationImageWithOri and CartesianToAxes repair and project the same frame alike."""
     rng = np.random.default_rng(17)
     one = serial_pairs[0]
     for sample in one.regular[:3] if offered(one) else ():

@@ -53,7 +53,6 @@ def title(piece: Piece) -> str:
 
 @pytest.mark.parametrize("unit", TEXTS)
 def test_it_parses(unit: str) -> None:
-    """The independent grammar reads every part of a unit."""
     for piece in pieces()[unit]:
         assert parse_with_blark(piece.text, piece.kind), f"{unit} {piece.title}"
 
@@ -79,7 +78,6 @@ def test_all_names_are_names() -> None:
 
 @pytest.mark.parametrize("word", ["and", "end_var", "at"])
 def test_a_word_of_the_grammar_would_be_refused(word: str) -> None:
-    """The independent grammar refuses a variable with the name of a keyword."""
     with pytest.raises(lark.LarkError):
         parse_with_blark(declaring(["headingLength", word]), "METHOD")
 

@@ -38,7 +38,6 @@ def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
 
 @pytest.mark.parametrize("size", [*range(1, 7), 8, 12, 16, 18])
 def test_solve(size: int) -> None:
-    """The solution and the determinant of a linear system are those of NumPy."""
     rng = np.random.default_rng(size)
     for columns in (0, 1, 6):
         for _ in range(20):
@@ -56,14 +55,12 @@ def test_solve_where_the_first_pivot_is_zero() -> None:
 
 @pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3)), np.ones((8, 8))])
 def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
-    """A singular system has the determinant 0 and a solution of zeros."""
     determinant, solution = solved(matrix, np.ones((len(matrix), 2)))
     assert determinant == 0.0
     assert not solution.any()
 
 
 def test_solve_what_is_no_number() -> None:
-    """A system with NaN, an infinite or a huge number has the determinant 0 and a solution of zeros."""
     for wrong, k, size in product((math.nan, math.inf, -math.inf, 1e31), range(2), (2, 8)):
         tables = np.eye(size) + 0.25, np.ones((size, 1))
         tables[k][1, 0] = wrong
@@ -124,7 +121,6 @@ def test_relative_rotation() -> None:
 
 
 def rotations(count: int) -> list[np.ndarray]:
-    """Random rotations."""
     rng = np.random.default_rng(3)
     return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
 
@@ -143,7 +139,6 @@ def library(order: str, matrix_size: int) -> Library:
 
 
 def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
-    """A rotation matrix of the controller."""
     value = made.new("SM3M.SMC_Matrix3")
     made.set_rotation(value, rows)
     return value
@@ -151,7 +146,6 @@ def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_order_is_found(order: str) -> None:
-    """The storage order of the matrix is found, by rows and by columns."""
     assert library(order, 72).function("Softkin_FindMatrixOrder")() == ORDERS[order]
 
 
@@ -243,7 +237,6 @@ def by_columns(pair: Pair) -> Controller:
 @pytest.mark.broad
 @pytest.mark.long("Hexapod", "Scara4")
 def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> None:
-    """Every method gives the same answers for matrices that are stored by columns."""
     compared = [pair for pair in pairs if pair.machine.label in MACHINES]
     assert len(compared) == 3
     for pair in compared:

@@ -53,7 +53,6 @@ def test_every_block_supplies_what_the_base_calls(file: str) -> None:
 
 
 def test_what_a_block_need_not_supply() -> None:
-    """Whatever only some blocks supply some do and some do not, and the method that needs it is the base's own."""
     base = {m.name for m in library().objects["Softkin_Kinematics"].methods if m.access == "PUBLIC"}
     for name, methods in CONTRACT.supplied_for.items():
         assert methods <= base
@@ -167,7 +166,6 @@ WRONG_HEADERS = {
 
 @pytest.mark.parametrize("case", WRONG_HEADERS)
 def test_another_header_is_refused(case: str) -> None:
-    """A block whose method is not that of the interface does not compile."""
     file, old, new, message = WRONG_HEADERS[case]
     texts = {name: text for name, text in FILES.items() if name.startswith("softkin/") or name == SCARA}
     assert old in texts[file]

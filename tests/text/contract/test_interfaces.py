@@ -184,7 +184,6 @@ def test_the_base_alone_reads_inputs_and_writes_limits() -> None:
 
 
 def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
-    """The variables that statements assign, however deep."""
     for statement in body:
         if isinstance(statement, ast.Assign):
             target = statement.target

@@ -23,15 +23,12 @@ IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 @dataclass(frozen=True)
 class Image:
-    """An OrientationSpace."""
-
     freedom: str
     zero: Rows = IDENTITY
     base_axis: Numbers = Z
     flange_axis: Numbers = Z
 
     def in_python(self) -> softkin.OrientationImage:
-        """The same for the Python package."""
         return softkin.OrientationImage(self.freedom, self.zero, tuple(self.base_axis), tuple(self.flange_axis))
 
 

@@ -19,7 +19,6 @@ pytestmark = pytest.mark.slow
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
-    """The tests execute every statement of the block of an orientation kinematics."""
     pairs = orientation_pairs_of(mechanism)
     statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():

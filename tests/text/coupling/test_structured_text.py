@@ -170,7 +170,6 @@ METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in publi
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_every_method_is_here(mechanism: Mechanism) -> None:
-    """Every public method in the text of a block is compared."""
     methods = compiled(mechanism).objects[mechanism.block_name].methods
     own = tuple(m.name for m in methods if m.access == "PUBLIC")
     assert public_methods(mechanism)[: len(own)] == own
@@ -180,7 +179,6 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
-    """A method of the block answers as the Python package does, in both storage orders."""
     for pair in orientation_pairs_of(mechanism, order):
         for sample in pair.regular:
             COMPARISONS[method](pair, sample)
@@ -188,7 +186,6 @@ def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order:
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
 def test_the_number_of_axes(mechanism: Mechanism) -> None:
-    """NumAxes is the number of joints of the mechanism."""
     assert orientation_pairs_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
 
 

@@ -109,7 +109,6 @@ PAIRS = [(c, w) for c in CARRIERS for w in ORIENTATIONS]
 
 
 def rows(matrix: np.ndarray) -> Rows:
-    """A matrix as rows of plain numbers."""
     return tuple(map(tuple, matrix.tolist()))
 
 

@@ -25,7 +25,6 @@ from tests.text.values import PROPERTIES_TYPE, meaningless
 
 
 def compare(machine: Machine, block: Controller, position: Array, turn: Array) -> None:
-    """All methods at a pose that the inverse accepts."""
     robot = machine.robot
     axes = robot.inverse((position, turn))
     assert block.inverse(position, turn, (), (0.0,) * 6) == (OK, axes)

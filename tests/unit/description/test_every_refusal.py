@@ -211,7 +211,6 @@ def planar_arm() -> Kinematics:
 
 
 def bent(program: Program, name: str, factor: float) -> Program:
-    """The program with one output multiplied."""
     outputs = (Output(o.name, o.value * sp.Float(factor)) if o.name == name else o for o in program.outputs)
     return replace(program, outputs=tuple(outputs))
 

@@ -181,7 +181,6 @@ REFUSED = {
 
 @pytest.mark.parametrize("kind", REFUSED)
 def test_refused(kind: str) -> None:
-    """A wrong description is refused with a message that names the fault."""
     mechanism, message = REFUSED[kind]
     with pytest.raises((DescriptionError, Unsolved), match=re.escape(message)):
         build(validate(mechanism))
@@ -206,7 +205,6 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("kind", UNSOLVED)
 def test_unsolved(kind: str) -> None:
-    """A mechanism without a closed form is refused with the equations that are left."""
     mechanism, message = UNSOLVED[kind]
     with pytest.raises(Unsolved, match=re.escape(message)):
         build(mechanism)

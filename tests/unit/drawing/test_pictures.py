@@ -87,7 +87,6 @@ def test_no_length_is_told_as_a_number(mechanism: Mechanism) -> None:
 
 
 def test_axes_and_lengths_are_in_the_text(mechanism: Mechanism) -> None:
-    """The text of a picture names every axis and every length."""
     text = " ".join(_in_full(element.text or "") for element in _texts(mechanism))
     text = " ".join([text, *_series(text)])
     declaration = _block(mechanism).split("END_VAR")[0]
@@ -175,7 +174,6 @@ def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
     ],
 )
 def test_labels_are_spelled(label: str, text: str) -> None:
-    """A label shows parameters as inputs of the block."""
     import sympy as sp
 
     names = {"link_length_1": "dLinkLength1", "pitch_zc": "dPitchZC"}
@@ -232,7 +230,6 @@ WRONG = {
 @pytest.mark.long
 @pytest.mark.parametrize("case", WRONG)
 def test_refused(case: str) -> None:
-    """A mechanism that cannot be drawn is refused with a message that names the fault."""
     mechanism, message = WRONG[case]
     kinematics = build(validate(mechanism))
     with pytest.raises(DescriptionError, match=message):

@@ -59,7 +59,6 @@ def test_bars_and_links_have_the_lengths_of_parameters(one: Drawn) -> None:
     [("Kin_Delta_P3C_Type3", {"azimuth_1", "azimuth_2", "azimuth_3"}), ("Kin_Tripod_Linear", {"rail_angle"})],
 )
 def test_angles_are_as_wide_as_their_parameters(name: str, angles: set[str]) -> None:
-    """Those of a machine that are not zero have an arc, and the others are named."""
     one = drawn(name)
     scene = one.drawing.scene
     nominal = {p.name: p.nominal for p in one.mechanism.parameters}
@@ -189,7 +188,6 @@ def test_rails_that_begin_in_one_point_are_stacked() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", SLIDES)
 def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
-    """The arrow of a linear axis is parallel to its rail."""
     drawing = drawn(name).drawing
     assert drawing.scene.slides
     ends = rails(drawing.scene)

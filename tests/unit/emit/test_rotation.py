@@ -46,7 +46,6 @@ def in_the_reference(matrices: Array) -> tuple[Array, list[str]]:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
-    """The repair leaves a rotation that is exact to 1e-12 unchanged."""
     rotation = random_rotations(1, seed)[0]
     matrices = np.array(
         [rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])]

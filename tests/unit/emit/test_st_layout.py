@@ -11,7 +11,6 @@ SENTENCES = st.lists(st.text("abcdefgh", min_size=1, max_size=12), max_size=30).
 
 @given(st.integers(1, 60), SENTENCES)
 def test_a_comment_beside_a_declaration_is_whole_and_fits(length: int, comment: str) -> None:
-    """A comment beside a declaration is complete, and no line is too long."""
     declaration = "d" * length
     lines = beside(declaration, comment)
     assert lines[0].startswith(declaration)

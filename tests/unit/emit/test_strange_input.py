@@ -170,7 +170,6 @@ def test_the_rods_of_a_scissor() -> None:
 
 
 def test_a_coupled_pair_names_the_part() -> None:
-    """The reason of a coupled pair names the part that refuses."""
     robot = softkin.Coupled(softkin.Scara2Z(**LENGTHS), softkin.CAxis(lower_c=-90.0, upper_c=90.0))
     far = (520.0, 0.0, 0.0), NO_TURN
     error = raised(robot.inverse, far)
@@ -180,7 +179,6 @@ def test_a_coupled_pair_names_the_part() -> None:
 
 
 def test_an_error_travels_whole() -> None:
-    """Pickling an error keeps its status, its message and its refusal."""
     error = raised(softkin.Scara2Z(**LENGTHS).inverse, ((600.0, 0.0, 0.0), NO_TURN))
     copy = pickle.loads(pickle.dumps(error))
     assert isinstance(error, softkin.KinematicsError)
@@ -240,7 +238,6 @@ def _text(seed: str) -> str:
 
 @pytest.mark.slow
 def test_the_text_does_not_depend_on_the_hash_seed() -> None:
-    """Generated text and pages are the same for two hash seeds of Python."""
     first = _text("0")
     assert len(first) > 100_000 and "spanUpperX" in first
     assert _text("90210") == first

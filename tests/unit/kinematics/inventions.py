@@ -51,8 +51,6 @@ ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
 @dataclass(frozen=True)
 class Invention:
-    """A description with its forward kinematics."""
-
     mechanism: Mechanism
     hand: Hand
 
@@ -89,7 +87,6 @@ def e(angle: Array) -> Array:
 
 
 def rrr(p: Mapping[str, Array], first: Array, second: Array, third: Array) -> Array:
-    """The tip of three links with absolute angles."""
     return p["link_1"] * e(first) + p["link_2"] * e(second) + p["link_3"] * e(third)
 
 

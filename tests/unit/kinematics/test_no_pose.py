@@ -46,7 +46,6 @@ P = vector(X, Y)
 
 
 def two_rods(first: Rod, second: Rod, **stated: object) -> Mechanism:
-    """A loop of two rods in a plane."""
     one, two = (minus(P, r.base) for r in (first, second))
     ways = [(branch(n, dot(vector(1, 0), v), ahead=+1, behind=-1)) for n, v in (("left", one), ("right", two))]
     mode = assembly("tcp", cross(one, two), margin="aligned", above=+1, below=-1)
@@ -209,7 +208,6 @@ def by_hand(name: str, axes: Values) -> dict[str, np.ndarray]:
 @pytest.mark.slow
 @EVERY
 def test_forward_is_what_the_description_means(name: str) -> None:
-    """Forward kinematics is that of the closure, computed by hand."""
     axes = axes_of(name)
     pose, expected = built(name).forward(axes), by_hand(name, axes)
     size = 1 + max(np.abs(expected[c]).max() for c in "xyz")
@@ -243,7 +241,6 @@ def everything(program: Program) -> Program:
     "kind", ["forward", "branch", "singularity", "jacobian", "offset_branch", "offset_configuration"]
 )
 def test_total(name: str, kind: str) -> None:
-    """No input gives NaN or infinity, whatever the status: nothing that would stop a controller."""
     program = getattr(built(name).kinematics, kind)
     if program is None:
         assert kind.startswith("offset") and not INVENTIONS[name].mechanism.offers_points

@@ -265,7 +265,6 @@ def test_a_tool_beside_the_last_of_five_axes() -> None:
 
 
 def pointing(joints: tuple[Joint, ...], chain: Chain) -> Mechanism:
-    """A machine whose direction is commanded."""
     return validate(Mechanism(name="Five", joints=joints, chain=chain, task=Task("xyz", Turning.DIRECTION)))
 
 

@@ -47,7 +47,6 @@ def arm(chain: Chain, *branches: object, parameters: tuple[Parameter, ...] = LEN
 
 
 def chosen(mechanism: Mechanism) -> str | None:
-    """The name of the joint that is searched."""
     search = with_search(mechanism).search
     return None if search is None else search.joint.name
 

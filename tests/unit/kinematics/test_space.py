@@ -175,7 +175,6 @@ ARMS: dict[Callable[[], Mechanism], int] = {
 
 @pytest.mark.parametrize("make", ARMS, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
-    """An invented spatial arm is derived, and the witness finds as many solutions as the inverse has."""
     described = make()
     evidence = witness(build(described), described)
     assert evidence.inverted is not None

@@ -204,14 +204,12 @@ def described(name: str) -> Mechanism:
 
 @cache
 def built(name: str) -> Kinematics:
-    """The programs, with what the witness found."""
     kinematics = machine(validate(described(name))).kinematics
     evidence = witness(kinematics, described(name))
     return replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
 
 
 def poses_of(name: str) -> Values:
-    """Poses around home."""
     mechanism, rng = described(name), np.random.default_rng(6)
     given = {p.symbol: p.nominal for p in mechanism.parameters}
     home = [float(v.subs(given)) for v in mechanism.home]

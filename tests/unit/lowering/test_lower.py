@@ -117,7 +117,6 @@ def random_program(draw: st.DrawFn) -> Program:
 @settings(max_examples=50)
 @given(random_program(), st.integers(0, 2**16))
 def test_values_stay_the_same(one: Program, seed: int) -> None:
-    """A lowered program has the outputs of the program before."""
     (shorter,), hoisted = lowered([one], CONSTANTS)
     rng = np.random.default_rng(seed)
     given_ = {name: rng.uniform(-2.0, 2.0, 5) for name in "xyzcd"}
@@ -162,7 +161,6 @@ def test_what_is_short_stays_as_it_is() -> None:
 
 
 def test_a_long_name_is_shortened_and_stays_unique() -> None:
-    """Two long names with the same ends are numbered; a name of usual length is kept."""
     names = Names(())
     first, second = (names.fresh(f"sum_in_r22_from_{word * 20}_{'turn_x_' * 9}tried").name for word in ("ab_", "cd_"))
     third = names.fresh(f"sum_in_r22_from_{'ab_' * 21}{'turn_x_' * 9}tried").name
@@ -205,7 +203,6 @@ def test_products_of_both_branches_are_computed_once() -> None:
 
 
 def test_the_angle_of_a_mirrored_direction_is_the_negative() -> None:
-    """The angle of a mirrored direction is the negative of the angle, and costs no arc tangent."""
     swing = (
         Let(R, ToReal(ELBOW.symbol) * Root(X)),
         Let(ANGLE, Atan2(R, C)),

@@ -68,7 +68,6 @@ def test_the_refusal_of_a_slot_is_its_first_condition_that_does_not_hold() -> No
 
 
 def test_linear_equations_are_unrolled_too() -> None:
-    """A system of linear equations is solved for each branch, with the same solutions as before."""
     system = Solve((A,), (X + ELBOW.symbol,), (Y,), determinant=B)
     looped = Program("p", (ELBOW.symbol, X, Y), (system,), (Output("o", A), Output("d", B)))
     values = {"x": np.array([3.0, 1.0, -1.0]), "y": np.array([2.0, 5.0, 7.0])}
@@ -76,7 +75,6 @@ def test_linear_equations_are_unrolled_too() -> None:
 
 
 def test_what_iterates_is_not_unrolled() -> None:
-    """A program with an iteration cannot be unrolled."""
     loop = Iterate((A,), (X,), (), (A / 2,), sp.Lt(A, 1), 9, Status.IMPOSSIBLE)
     looped = Program("p", (X,), (loop,), (Output("o", A),))
     assert not is_straight(looped)

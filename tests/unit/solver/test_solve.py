@@ -63,7 +63,6 @@ class Case:
 
 
 def arm(*links: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
-    """x and y of links (length, absolute angle)."""
     return sp.Add(*[n * sp.cos(a) for n, a in links]), sp.Add(*[n * sp.sin(a) for n, a in links])
 
 
@@ -179,7 +178,6 @@ def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_all_solutions(name: str) -> None:
-    """The derivation finds all solutions of the closure, each on the branch of its signs."""
     case = CASES[name]
     derivation, given = case.derivation, samples(case)
     found = solutions(case, derivation, given)
@@ -204,7 +202,6 @@ def _apart(case: Case, first: Mapping[str, float], second: Mapping[str, float]) 
 @pytest.mark.long("3R")
 @pytest.mark.parametrize("name", CASES)
 def test_by_these_rules(name: str) -> None:
-    """The driver uses the expected rules in the expected order."""
     assert CASES[name].derivation.rules == CASES[name].rules
 
 
@@ -234,7 +231,6 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("name", UNSOLVED)
 def test_unsolved_says_what_is_left(name: str) -> None:
-    """The error for an unsolved mechanism names the equations and unknowns that are left."""
     case, message = UNSOLVED[name]
     with pytest.raises(Unsolved) as refusal:
         solve(case.problem, case.arguments, lambda angle: ())
@@ -242,7 +238,6 @@ def test_unsolved_says_what_is_left(name: str) -> None:
 
 
 def test_a_step_binds_a_name_once() -> None:
-    """Two values under one name in a derivation raise `BrokenProgram`."""
     record = DerivationRecord()
     record.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
     with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
@@ -293,7 +288,6 @@ for name in ("2R with a tool beside the arm", "2R with absolute angles", "should
 
 @pytest.mark.slow
 def test_the_same_text_in_every_process() -> None:
-    """The derivation is the same for two hash seeds of Python."""
     root = Path(__file__).resolve().parents[3]
     texts = set()
     for seed in ("0", "4711"):

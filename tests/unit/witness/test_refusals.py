@@ -52,7 +52,6 @@ def said_of(kinematics: Kinematics) -> str:
 
 @pytest.mark.long
 def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One elbow is never found: half of the solutions."""
     monkeypatch.setattr(inverse, "_round_trip", lambda *_: 0.0)
     monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (0, 1))
     one_elbow = replace(arm, branch=refusing(arm.branch, sp.Gt(real("sigma_elbow"), 0)))
@@ -99,7 +98,6 @@ LONG_ARM = Mechanism(
 
 
 def steps(of: Callable[[Mechanism], object]) -> int:
-    """Those that it takes."""
     with at_most(inf, unit=STEPS) as work:
         of(validate(LONG_ARM))
     return work.done
