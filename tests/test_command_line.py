@@ -19,14 +19,6 @@ ROOT = MECHANISMS.parents[1]
 
 BROKEN: dict[str, tuple[str, str, str]] = {
     "no Python": ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((", "SyntaxError: "),
-    "an undefined name": ("Rz(A4)", "Rz(A9)", "NameError: name 'A9' is not defined"),
-    "a misspelt field": ("family=", "famliy=", "TypeError: .*'famliy'"),
-    "no description": ("MECHANISM =", "SCARA =", "defines no MECHANISM"),
-    "a parameter outside its range": (
-        "high=800.0, nominal=325.0",
-        "high=300.0, nominal=325.0",
-        r"parameter 'link_length_1': its nominal value 325 is outside its range \]0 \.\. 300\]",
-    ),
     "a default outside its range": (
         "low=-200.0, high=200.0",
         "low=5.0, high=200.0",
@@ -37,44 +29,12 @@ BROKEN: dict[str, tuple[str, str, str]] = {
         "offset_range=(720.0, -720.0)",
         r"joint 'A4': its offset_range \(720\.0, -720\.0\) is empty",
     ),
-    "a joint that is not the mechanism's": (
-        "joints=(A1, A2, A3, A4)",
-        "joints=(A1, A3, A4)",
-        "periods names 'A2', which is no multi-turn joint",
-    ),
-    "an unknown joint in the chain": (
-        "joints=(A1, A2, A3, A4),",
-        "joints=(A1, A2, A4),",
-        "chain reads 'a3', which is not a joint or a parameter of this mechanism",
-    ),
-    "an unknown joint in a branch": (
-        "sin(A2), right",
-        "sin(rotary('A7', 'another')), right",
-        "branch 'elbow' reads 'a7', which is not a joint or a parameter",
-    ),
     "a branch of no joint": (
         "sin(A2), right",
         "sin(L1), right",
         r"branch 'elbow': its indicator sin\(link_length_1\) depends on no joint",
     ),
-    "a branch with one side": ("left=-1", "left=+1", r"branch 'elbow' needs two names with the signs \+1 and -1"),
     "a branch that no root has": ("sin(A2), right", "sin(A1), right", "branch 'elbow': "),
-    "a joint that moves nothing": (
-        "Tz(A3 - P * A4 / TURN)",
-        "Tz(-P * A4 / TURN)",
-        "joint 'A3' occurs nowhere in the closure",
-    ),
-    "an under-constrained closure": (
-        'Task("xyz", Turning.ABOUT_Z)',
-        'Task("xyz")',
-        r"one joint too many: the task commands 3 quantities \(x, y, z\)",
-    ),
-    "the same joint twice": ("joints=(A1, A2, A3, A4)", "joints=(A1, A2, A3, A4, A1)", "joint 'A1' is given 2 times"),
-    "the same parameter twice": (
-        "parameters=(L1, L2, P)",
-        "parameters=(L1, L2, P, L1)",
-        "parameter 'link_length_1' is given 2 times",
-    ),
 }
 
 
@@ -95,7 +55,7 @@ def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return message
 
 
-@pytest.mark.slow("no root has", "under-constrained")
+@pytest.mark.slow("no root has")
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
     old, new, expected = BROKEN[what]

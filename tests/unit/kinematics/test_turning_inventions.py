@@ -11,14 +11,12 @@ from sympy import cos, sin
 
 from derive.description.mechanism import (
     Branch,
-    DescriptionError,
     Joint,
     Mechanism,
     Rod,
     Task,
     Turning,
     Vendor,
-    assembly,
     branch,
     distance,
     length,
@@ -246,21 +244,3 @@ def test_there_and_back(name: str) -> None:
     for value in pose:
         assert np.abs(again[value] - pose[value][good]).max() < 1e-9
     assert all((again[f"branch_{b.name}"] > 0).all() for b in own.kinematics.branches)
-
-
-def test_a_loop_that_is_not_described_as_needed_is_refused() -> None:
-    """The sentence says what is missing."""
-    own = three_rpr()
-    on_a_slide = replace(own.rods[0], plate=on_plate(own.joints[0], 1.0))
-    for wrong, words in (
-        (replace(own, rods=own.rods[:2], joints=own.joints[:2], positive=own.positive[:2]), "only 2 joints"),
-        (replace(own, offset_interface=True), "needs offset_interface=False"),
-        (replace(own, task=Task("xy", Turning.DIRECTION)), "only 3 joints"),
-        (replace(own, assembly=assembly("plate", own.joints[0], margin="x", one=1, two=-1)), "needs no assembly"),
-        (replace(own, home=own.home[:2]), "needs a home pose of 3 coordinates, and has 2"),
-        (replace(own, task=Task("xy", Turning.FULL)), "and there are only 3 joints"),
-        (replace(own, rods=(on_a_slide, *own.rods[1:])), "which no joint moves on it"),
-        (replace(own, closure=(own.joints[0].symbol - own.joints[1].symbol,)), "closure has 4 equations"),
-    ):
-        with pytest.raises(DescriptionError, match=words):
-            machine(wrong)
