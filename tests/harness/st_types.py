@@ -181,15 +181,13 @@ Type = (
 BOOL = Boolean()
 BYTE = Integer("BYTE", 0, 255, 1, is_bits=True)
 DWORD = Integer("DWORD", 0, 2**32 - 1, 4, is_bits=True)
-SINT = Integer("SINT", -128, 127, 1)
-USINT = Integer("USINT", 0, 255, 1)
 INT = Integer("INT", -(2**15), 2**15 - 1, 2)
 UINT = Integer("UINT", 0, 2**16 - 1, 2)
 DINT = Integer("DINT", -(2**31), 2**31 - 1, 4)
 UDINT = Integer("UDINT", 0, 2**32 - 1, 4)
 LREAL = Real()
 NOTHING = NoResult()
-ELEMENTARY: dict[str, Type] = {t.name: t for t in (BOOL, BYTE, DWORD, SINT, USINT, INT, UINT, DINT, UDINT, LREAL)}
+ELEMENTARY: dict[str, Type] = {t.name: t for t in (BOOL, BYTE, DWORD, INT, UINT, DINT, UDINT, LREAL)}
 
 
 def is_scalar(of: Type) -> bool:

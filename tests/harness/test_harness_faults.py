@@ -69,7 +69,6 @@ FAULTS = {
     "pointer index": ("p := ADR(m); p^[k] := 1.0;", 0.0, 9, "outside 0..8"),
     "write beyond the memory": ("p := ADR(short); p^[k] := 1.0;", 0.0, 3, "write beyond"),
     "read beyond the memory": ("p := ADR(short); Probe := p^[k];", 0.0, 3, "read beyond"),
-    "endless WHILE": ("WHILE TRUE DO n := 1; END_WHILE", 0.0, 0, "loop"),
     "endless FOR": ("FOR n := 0 TO 3 DO n := 0; END_FOR", 0.0, 0, "loop"),
     "FOR that steps past its type": ("FOR n := 2147483646 TO 2147483647 DO b := TRUE; END_FOR", 0.0, 0, "overflow"),
 }

@@ -67,9 +67,9 @@ ELSE
   FOR i := 1 TO count DO
     Walk := Walk + i;
   END_FOR
-  WHILE i > 100 DO
-    i := i - 1;
-  END_WHILE
+  IF i > 100 THEN
+    i := 100;
+  END_IF
 END_IF
 CASE Walk OF
   1:

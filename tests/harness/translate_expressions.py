@@ -254,8 +254,7 @@ class Expressions:
     def _builtin(self, node: ast.Call, name: str) -> str:
         of = self.facts.type_of[node]
         if name in REAL_FUNCTIONS:
-            python = "log" if name == "LN" else name.lower()
-            return f"math.{python}({self.value(node.arguments[0].value, types.LREAL)})"
+            return f"math.{name.lower()}({self.value(node.arguments[0].value, types.LREAL)})"
         if name == "TRUNC":
             return self._in_range(f"truncated({self.value(node.arguments[0].value)})", of)
         pair = conversion(name)

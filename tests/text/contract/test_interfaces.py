@@ -195,7 +195,7 @@ def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
             for branch in statement.branches:
                 yield from _written(branch.body)
             yield from _written(statement.otherwise)
-        elif isinstance(statement, ast.For | ast.While):
+        elif isinstance(statement, ast.For):
             yield from _written(statement.body)
 
 
