@@ -41,7 +41,6 @@ def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
 
 
 def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
-    """The setup program reads every parameter in its type."""
     inputs = {s.name: s for s in kinematics.setup.inputs}
     for parameter in kinematics.parameters:
         name = inputs[parameter.name]

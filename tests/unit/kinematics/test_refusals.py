@@ -14,17 +14,7 @@ import sympy as sp
 from sympy import cos
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.mechanism import (
-    DescriptionError,
-    Mechanism,
-    Parameter,
-    Task,
-    Turning,
-    X,
-    Y,
-    length,
-    rotary,
-)
+from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, X, Y, length, rotary
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.faults import GenerationError

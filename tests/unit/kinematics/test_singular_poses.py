@@ -12,7 +12,7 @@ REFERENCES = (-400.0, -37.0, 0.0, 200.0)
 
 
 def built(name: str, **settings: float) -> Machine:
-    return machine(INVENTIONS[name].mechanism, **settings)
+    return machine(INVENTIONS[name], **settings)
 
 
 def turn_between(first: np.ndarray, second: np.ndarray | float) -> float:

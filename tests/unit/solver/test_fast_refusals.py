@@ -21,7 +21,7 @@ from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Txyz, Ty, Tz
 from derive.kinematics.build import build
 from derive.solver import eliminations, solve
 from derive.solver.unsolved import Unsolved
-from tests.unit.kinematics.inventions import invention
+from tests.unit.kinematics.inventions import described
 
 pytestmark = pytest.mark.slow
 
@@ -48,14 +48,13 @@ def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) 
     """An arm for the whole pose, or for its direction."""
     used = {s for factor in chain.factors for s in factor.amount.free_symbols}
     parameters: tuple[Parameter, ...] = tuple(p for p in LENGTHS if p.symbol in used)
-    return invention(
-        lambda p, q: (p["l0"], p["l0"], p["l0"]),
+    return described(
         parameters=parameters,
         joints=tuple(joints),
         chain=chain,
         task=Task("xyz", turning),
         offset_interface=False,
-    ).mechanism
+    )
 
 
 REFUSED = {
