@@ -8,7 +8,6 @@ import pytest
 from bench.blocks import FOLDER, KINDS, Kind, measured
 from derive.description.mechanism import Mechanism, Turning
 from derive.emit.softmotion.base import INHERITED
-from tests.catalogue.coupling.parts import ORIENTATIONS
 from tests.catalogue.references import held_at
 from tests.harness.library import Library
 from tests.text.any_method import call_of, methods_of
@@ -220,28 +219,11 @@ def test_a_further_method_answers_or_is_impossible(pairs: tuple[Pair, ...]) -> N
 
 
 def test_every_block_knows_its_orientation(pairs: tuple[Pair, ...]) -> None:
-    """AxesToOrientation is the rotation that AxesToCartesian finds, whatever the interfaces of the block are."""
     for one in pairs[:2]:
         for sample in one.regular[:3]:
             status, found = one.controller.orientation(sample.axes)
             assert status == OK
             np.testing.assert_allclose(found, one.controller.forward(sample.axes)[1][1], rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize("mechanism", [m for m in ORIENTATIONS if m.joints], ids=lambda m: m.name)
-def test_orientation_blocks_answer_or_say_impossible(mechanism: Mechanism) -> None:
-    library = compiled(mechanism)
-    controller = Controller(library, mechanism)
-    assert controller.initialise({p.name: p.nominal for p in mechanism.parameters}) == OK
-    axes = tuple(10.0 + 7.0 * k for k, _ in enumerate(mechanism.joints))
-    assert {"AxesToOrientation", "CartesianToAxes_Offset"} <= set(further_methods(controller))
-    status, rotation = controller.orientation(axes)
-    assert status == OK
-    _, (position, turned, data) = controller.forward(axes)
-    np.testing.assert_allclose(rotation, turned, rtol=0, atol=1e-12)
-    status, _ = controller.inverse_offset(position, (0.0, 0.0, 0.0), data, axes)
-    assert status == IMPOSSIBLE
-    assert controller.image_with_orientation(rotation)[0] in (OK, IMPOSSIBLE)
 
 
 RATIO = 1.3

@@ -188,6 +188,7 @@ NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
     "IsInitialized": lambda result, before, after: result is False,
     "Diagnose": lambda result, before, after: result == "not initialized",
     "IsSingularity": lambda result, before, after: result is True,
+    "IsCompatibleWithPosKin": lambda result, before, after: result is False,
     "GetAxisProperties": is_free,
     "GetOrientationImage": is_unknown,
     "AxesToConfiguration_Offset": is_automatic,
