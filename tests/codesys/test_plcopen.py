@@ -16,7 +16,6 @@ from derive.emit.plcopen.objects import Object, objects_of
 from tests.codesys.parts import FILES, SAMPLES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables
-from tests.harness.library import compile_st
 from tests.harness.parse import parse as parse_st
 
 ROOT = OUTPUT / "st"
@@ -68,14 +67,6 @@ def test_everything_reads_back_to_the_text_of_the_files() -> None:
     assert len(read) > 600
 
 
-@pytest.mark.slow
-def test_what_is_read_back_compiles() -> None:
-    """The stand-in compiler takes the text from the XML as it takes the files, all methods and interfaces included."""
-    read = wholes(parse(EVERYTHING))
-    library = compile_st({name: whole.text() for name, whole in read.items()})
-    assert set(library.objects) == set(read) == {p.path for p in all_parts(FILES).values() if "." not in p.path}
-
-
 def test_folders_are_those_of_the_files() -> None:
     wanted: dict[str, list[str]] = {}
     for name, text in FILES.items():
@@ -104,13 +95,6 @@ def test_a_mechanism_comes_with_just_what_it_needs(unit: str) -> None:
 
 def _code(text: str) -> str:
     return re.sub(r"\(\*.*?\*\)|//[^\n]*|'[^']*'", "", text, flags=re.DOTALL)
-
-
-@pytest.mark.parametrize("unit", ["gantry/Softkin_Gantry2", "parallel/Kin_Hexapod", "polar/Kin_Crane"])
-def test_a_mechanism_alone_compiles(unit: str) -> None:
-    read = wholes(parse(ROOT / f"{unit}.xml"))
-    library = compile_st({name: whole.text() for name, whole in read.items()})
-    assert unit.split("/")[1] in library.objects
 
 
 def test_an_object_has_one_identifier_everywhere() -> None:

@@ -76,11 +76,6 @@ def test_a_byte_without_a_meaning() -> None:
     )
 
 
-def test_before_initialize() -> None:
-    controller = Controller(compiled(SCARA), SCARA)
-    assert controller.diagnose((400.0, 0.0, 50.0), NO_TURN, (1, 0, 0), REFERENCE) == ("not initialized", 0.0)
-
-
 def test_it_changes_nothing() -> None:
     robot = Scara2Z(**GIVEN)
     position, configuration = frame((5.0, 30.0, 50.0))

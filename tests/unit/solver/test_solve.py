@@ -1,13 +1,9 @@
 """The driver: problems that no mechanism of the catalogue has, solved, or refused with the equations left."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -245,9 +241,6 @@ def test_a_step_binds_a_name_once() -> None:
 
 
 def test_turns_count_once_they_are_chosen() -> None:
-    """An equation in which an angle stands outside sines and cosines waits until `resolve_angle`
-    has chosen its turns.
-    """
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1), "z": P - K * A1}, (A1,), (P,))
     turned: list[sp.Symbol] = []
 
@@ -266,7 +259,6 @@ def test_turns_count_once_they_are_chosen() -> None:
 
 
 def test_no_turn_is_chosen_that_nothing_needs() -> None:
-    """The turn of an angle is chosen only where a value needs the angle as a number."""
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1)}, (A1,))
     asked: list[sp.Symbol] = []
 
@@ -276,23 +268,3 @@ def test_no_turn_is_chosen_that_nothing_needs() -> None:
 
     solve(case.problem, case.arguments, ask)  # type: ignore[attr-defined]
     assert asked == []
-
-
-DERIVE = """
-from tests.unit.solver.test_solve import CASES
-for name in ("2R with a tool beside the arm", "2R with absolute angles", "shoulder and elbow"):
-    derivation = CASES[name].derivation
-    print(derivation.rules, derivation.determinants, derivation.conditionings, *derivation.statements, sep="\\n")
-"""
-
-
-@pytest.mark.slow
-def test_the_same_text_in_every_process() -> None:
-    root = Path(__file__).resolve().parents[3]
-    texts = set()
-    for seed in ("0", "4711"):
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(root)}
-        command = [sys.executable, "-c", DERIVE]
-        texts.add(subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=True).stdout)
-    assert len(texts) == 1
-    assert texts.pop().count("Let(name=") > 30

@@ -21,21 +21,13 @@ from derive.solver.unsolved import Exhausted
 from derive.witness import Disagreement, inverse, witness
 from derive.work import STEPS, at_most
 from tests.mechanisms import kinematics_of, named
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, described
+from tests.unit.kinematics.inventions import A1, A2, L1, L2, planar_arm
 
 
 @pytest.fixture(scope="module")
 def arm() -> Kinematics:
     """An arm with two links in a plane, said to be searched along its first joint: its slots are what they were."""
-    mechanism = described(
-        parameters=(L1, L2),
-        joints=(A1, A2),
-        chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-        task=Task("xy"),
-        branches=(ELBOW,),
-        offset_interface=False,
-    )
-    kinematics = build(validate(mechanism))
+    kinematics = build(validate(planar_arm()))
     return replace(kinematics, mechanism=replace(kinematics.mechanism, search=search(A1, where=L2)))
 
 
