@@ -59,7 +59,6 @@ def configured(one: Pair, given: dict[str, Any]) -> tuple[int, ...]:
 
 
 def test_what_is_set_is_read(one: Pair) -> None:
-    """The reading block gives back what the setting block wrote, for every choice and turn."""
     counts = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for branches in product((0, 1, 2), repeat=counts[0]):
         for turn in PERIODS:

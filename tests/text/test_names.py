@@ -217,7 +217,6 @@ ARMS = {"dArmLength1": 300.0, "dArmLength2": 250.0}
 
 @pytest.mark.parametrize(("name", "x"), [("Unreachable", 1000.0), ("BadInput", float("nan"))])
 def test_an_error_is_the_one_of_the_list(name: str, x: float) -> None:
-    """Beyond its reach and for no number a block answers what the list names."""
     assert inverse(*ready(name, STRANGE, SCARA_TEXT, **ARMS), x) == STRANGE
 
 
@@ -240,7 +239,6 @@ def test_a_type_of_axis_is_the_one_of_the_list(name: str, axis: int) -> None:
 
 
 def test_a_freedom_is_the_one_of_the_list() -> None:
-    """The freedom of a flange that turns is what the list names."""
     found, block = ready("TurningOrientation", "three", SCARA_TEXT, **ARMS)
     image = found.new(values.IMAGE_TYPE)
     block.call("GetOrientationImage", oriInfo=image)

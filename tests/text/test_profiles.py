@@ -68,7 +68,6 @@ def base(profile: str | None) -> ast.Block:
 
 
 def test_an_older_library_gets_the_predecessors() -> None:
-    """For an older library a block implements the predecessors of newer interfaces."""
     current, older = block(None), block("before_4_11")
     assert {f"TRAFO.{name}" for name in LEFT_OUT} <= set(current.implements)
     assert [name for name in older.implements if name.removeprefix("TRAFO.") in LEFT_OUT] == []

@@ -167,7 +167,6 @@ def test_a_head_it_cannot_read_is_refused() -> None:
 
 @pytest.mark.parametrize("line", ["  a b : LREAL;", "  a : LREAL", "a : LREAL;", "  a : LREAL; b : LREAL;"])
 def test_a_declaration_it_cannot_read_is_refused(line: str) -> None:
-    """A line that declares no variables, or those of two types, is refused."""
     with pytest.raises(ValueError, match="not a declaration of variables"):
         declaration_of(f"FUNCTION F : BOOL\nVAR\n{line}\nEND_VAR")
 

@@ -112,7 +112,6 @@ def test_split_known() -> None:
     [(X, False), (-X, False), (sp.Integer(2), False), (2 * X, True), (X + 1, True), (X**2, True)],
 )
 def test_what_deserves_a_name(expression: sp.Expr, compound: bool) -> None:
-    """A sum or product gets a name, and a single symbol with a factor does not."""
     assert is_compound(expression) is compound
 
 

@@ -201,7 +201,6 @@ def test_a_branch_with_the_other_sign(planar_arm: Kinematics) -> None:
 
 
 def test_a_machine_that_is_always_singular(planar_arm: Kinematics) -> None:
-    """A chain whose second joint moves nothing to speak of: no pose is regular."""
     chain = Rz(A1) * Tx(L1) * Rz(A2 * sp.Rational(1, 10**9)) * Tx(L2)
     with pytest.raises(Disagreement, match="a machine has no regular pose: is the mechanism always singular"):
         witness(planar_arm, replace(planar_arm.mechanism, chain=chain))

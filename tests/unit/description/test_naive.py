@@ -174,7 +174,6 @@ def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
 
 
 def test_lists_are_as_good_as_tuples(tmp_path: Path) -> None:
-    """What can only be meant in one way is understood."""
     path = tmp_path / "kin_naive.py"
     path.write_text(written(joints="[A1, A2, Z1, A4]", parameters="[L1, L2]"))
     assert load(path).joints == load_sound(tmp_path).joints

@@ -125,7 +125,6 @@ def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
 
 
 def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
-    """Every text is inside the picture, and no two texts touch."""
     for root in _drawn(mechanism):
         width, height = _size(root)
         found = [(element.text, _extent(element)) for element in root.iter(_TEXT)]
@@ -153,7 +152,6 @@ def test_no_picture_without_a_block() -> None:
 
 @pytest.mark.long
 def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
-    """Equal marks give equal files, which hold no date."""
     one = drawn("Kin_P2C_Type2")
     drawings = [page(one.drawing, "Title", {"inner_arm": "dInnerArm"}) for _ in range(2)]
     first, second = (pictures(p.marks, p.width, p.height) for p in drawings)
@@ -260,7 +258,6 @@ def test_no_pose_can_be_drawn() -> None:
 
 
 def test_a_bar_of_something_unknown_is_refused_before() -> None:
-    """A bar that reads an unknown parameter is refused when the description is checked."""
     strange = CATALOGUE["Kin_PCC"].parameters[0]
     with pytest.raises(DescriptionError, match="bar '1' reads 'link_length_1', which is not a joint or a parameter"):
         validate(_scissor(rod("1", (A1, 0), (X, Y), strange)))

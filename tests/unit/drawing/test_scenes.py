@@ -36,7 +36,6 @@ def loop(request: pytest.FixtureRequest) -> Drawn:
 
 
 def test_the_closure_holds_at_the_drawn_tool_frame(one: Drawn) -> None:
-    """The drawn pose satisfies the closure equations."""
     residual = one.closure.residual(one.joints, one.pose, one.parameters)
     scale = 1.0 + np.abs(one.pose).max() ** 2
     assert np.abs(residual).max() < 1e-5 * scale
@@ -97,7 +96,6 @@ def _moved(one: Drawn, index: int) -> np.ndarray:
 
 
 def test_arrows_of_a_chain_point_where_the_axis_goes(chain: Drawn) -> None:
-    """The tool goes with a turn about the drawn axis, and along a drawn arrow, as the chain multiplied out says."""
     scene, mechanism = chain.drawing.scene, chain.mechanism
     for index, joint in enumerate(mechanism.joints):
         name = axis_name(joint)

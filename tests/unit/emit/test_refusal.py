@@ -56,7 +56,6 @@ def called(program: Program, *given: float, names: tuple[str, ...] = ("x", "y"))
 
 
 def test_a_refusal_names_the_axis_and_the_amount() -> None:
-    """A printed condition refuses with the axis, the reason, the unit and the missing amount."""
     require = Require(sp.Gt(X, 1), Outcome.UNREACHABLE, reason=about_joint(Q1, Why.OUT_OF_REACH, 1 - X, Unit.LENGTH))
     program = normalise("p", [require], [Output("o", X + Y)])
     assert called(program, 3.0, 4.0) == (7.0,)
@@ -182,7 +181,6 @@ def test_what_are_no_three_rows_is_refused(rows: object) -> None:
 
 
 def test_rows_of_arrays() -> None:
-    """A table of a batch has the right shape, or raises BAD_INPUT with the name of the argument."""
     assert numbers(np.empty((0, 3)), None, (3,), "positions").shape == (0, 3)
     assert numbers((1, 2, 3), 5, (3,), "references").shape == (5, 3)
     for wrong in ([1, 2, 3], [["a", "b", "c"]], [[1, 2], [3]], [[math.nan] * 4], [[None] * 3]):

@@ -49,7 +49,6 @@ def test_select_and_absolute() -> None:
 
 
 def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
-    """The status of a row is that of its first condition that fails, and NaN fails every condition."""
     values = np.array([0.0, 1.0, 5.0, math.nan])
     status = _array.passed((values,))
     _array.require(status, values <= 2.0, Status.UNREACHABLE)
@@ -100,7 +99,6 @@ def test_statuses_are_there_for_all_that_is_given_together() -> None:
 
 @given(st.data())
 def test_every_slot_of_a_row_keeps_its_first_failure(data: st.DataObject) -> None:
-    """Conditions of any shape, one after the other, against the same conditions slot by slot."""
     status, expected = np.zeros((2, 2, 3), np.uint8), np.zeros((2, 2, 3), np.uint8)
     for otherwise in (Status.UNREACHABLE, Status.IMPOSSIBLE, Status.UNREACHABLE):
         condition = np.asarray(drawn(data, otherwise.name) > np.asarray(-4.0))
@@ -122,7 +120,6 @@ def test_numbers_of_reasonable_size() -> None:
 
 @given(st.data())
 def test_values_of_any_shapes_are_chosen_together(data: st.DataObject) -> None:
-    """A condition, what holds, and what is given elsewhere: each may be the same for rows or for signs, or for all."""
     level, first, second, a, b = (drawn(data, name) for name in ("level", "first", "second", "a", "b"))
     condition = np.greater(level, -3.0) if isinstance(level, np.ndarray) else level > -3.0
 

@@ -26,7 +26,6 @@ def test_a_long_declaration_still_has_its_comment() -> None:
 
 @pytest.mark.parametrize(("length", "lines"), [(10, 1), (90, 2), (98, 3)])
 def test_a_text_of_a_case_stands_where_there_is_room(length: int, lines: int) -> None:
-    """A text in a CASE moves to its own line where the label leaves no room."""
     found = case(12, "Diagnose", "x" * length)
     assert len(found) == lines
     assert "".join(line.strip() for line in found).replace(" ", "") == f"12:Diagnose:='{'x' * length}';"

@@ -117,7 +117,6 @@ def raised(call: Callable[..., object], *arguments: object) -> KinematicsError |
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
-    """The error of a refused inverse has the diagnosis that `diagnose` returns."""
     robot = nominal(mechanism)
     rng = np.random.default_rng(7)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") + 100.0
@@ -143,7 +142,6 @@ def texts_in_the_inverse(robot: softkin.Mechanism) -> list[str]:
 
 
 def test_beyond_a_limit_it_says_which_turn_is_inside() -> None:
-    """The error of an axis beyond its limit names the turn that is inside, and the missing amount."""
     robot = softkin.Scara2Z(**LENGTHS, lower_a1=-10.0, upper_a1=400.0)
     frame, configuration = robot.forward((-30.0, 40.0, 0.0))
     error = raised(robot.inverse, frame, configuration)

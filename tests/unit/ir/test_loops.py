@@ -35,7 +35,6 @@ def square_root(limit: int = 20) -> Program:
 
 
 def test_every_row_iterates_until_it_is_done() -> None:
-    """Every row iterates until it converges, or is refused after the most passes."""
     values = np.array([1.0, 2.0, 1e15, -1.0, np.nan])
     outputs, status = run(square_root(), {"a": values})
     assert list(status) == [Status.OK] * 2 + [Status.IMPOSSIBLE] * 3  # 1e15 is too far away
@@ -140,7 +139,6 @@ def caller(name: str = "caller", given: sp.Expr = C, outputs: tuple[sp.Symbol, .
 
 
 def test_it_binds_what_the_shared_program_answers() -> None:
-    """A call binds the outputs of the shared program, or passes on its status."""
     values = {"c": np.array([3.0, 6.0, -3.0, np.nan]), "q": np.array(4.0), "k": np.array(2.0)}
     outputs, status = run(caller(), values)
     assert list(status) == [Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE, Status.IMPOSSIBLE]
@@ -186,7 +184,6 @@ def test_only_what_is_read_is_bound() -> None:
 
 
 def test_an_alias_is_folded_into_the_arguments() -> None:
-    """An argument that is a name for another name is replaced by that name."""
     call = Call(hypotenuse(), ((A, W), (B, Q)), (X, Y))
     program = normalise("p", (Let(W, C), call), [Output("y", Y)])
     assert [type(s) for s in program.body] == [Call]

@@ -96,7 +96,6 @@ def test_the_commanded_period_brings_an_axis_back(axis: float) -> None:
 
 @pytest.mark.parametrize("edge", [-900.0, -540.0, -180.0, 180.0, 540.0, 900.0])
 def test_the_period_of_an_edge_is_stable(edge: float) -> None:
-    """Values within rounding of an edge belong to the same turn."""
     for axis in (edge, nextafter(edge, -INFINITY), nextafter(edge, INFINITY), edge - 4e-10, edge + 4e-10):
         turns = int(np.floor((axis + 180 + 1e-9) / 360))
         assert turns == (edge + 180) / 360
@@ -147,7 +146,6 @@ def test_the_first_failing_condition_gives_the_status() -> None:
     ids=str,
 )
 def test_garbage_fails_positive_conditions(garbage: float, condition: sp.Basic) -> None:
-    """NaN and infinite numbers fail every condition that is written positively."""
     _, status = run(Program("p", (X,), (Require(condition, Status.BAD_INPUT),), ()), {"x": np.asarray(garbage)})
     assert status.item() is Status.BAD_INPUT
 
@@ -223,7 +221,6 @@ def test_a_name_that_an_amount_reads_is_an_input() -> None:
 
 
 def test_an_amount_of_nothing_is_found() -> None:
-    """An amount that reads a value before it is bound is refused."""
     with pytest.raises(BrokenProgram, match="'y' is read before it is bound"):
         with_inputs(Program("p", (), (refusing(Y), Let(Y, X)), ()))
 
@@ -244,14 +241,12 @@ def test_who_is_told_nothing_computes_nothing() -> None:
 
 
 def test_the_reader_is_told_the_reason_or_the_note() -> None:
-    """The comment of a condition is its note, else its reason."""
     assert refusing(X).comment == "a: out of reach"
     assert replace(refusing(X), note="limits of A").comment == "limits of A"
     assert Let(A, X, "by the sum", turn_of="A1").comment == "by the sum; A1: whole turns added"
 
 
 def test_every_sentence_takes_one_name() -> None:
-    """Every sentence of a reason has at most one place for a name."""
     for why in Why:
         assert why.value.count("{}") <= 1
         assert about("NAME", why).words.count("NAME") == why.value.count("{}")

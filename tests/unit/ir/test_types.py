@@ -108,7 +108,6 @@ def test_a_name_that_is_read_as_another_type_is_refused() -> None:
 
 
 def test_normalising_keeps_types_and_drops_what_else_is_known() -> None:
-    """The normal form of a program keeps the types of names, and drops all other assumptions."""
     length = sp.Symbol("length", positive=True)
     program = normalise(
         "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
@@ -260,7 +259,6 @@ def test_a_pivot_that_is_zero_in_every_step() -> None:
 
 
 def test_the_sizes_of_numbers_that_are_solved() -> None:
-    """Systems with very small and very large entries are solved up to the limits of size."""
     wanted = np.linalg.solve(REGULAR, SIDES)
     for size in (3e-31, 2e29):
         for determinant, solution in answers(REGULAR * size, SIDES):

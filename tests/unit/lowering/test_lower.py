@@ -62,7 +62,6 @@ def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
-    """Values that do not depend on the state of an iteration are computed before it."""
     step = (Let(F, X * Y * A), Let(G, F + X * Y))
     loop = Iterate((A,), (B,), step, (A + F,), sp.Le(G, 1), 3, Status.UNREACHABLE)
     one = program(loop, outputs=(G,))

@@ -83,7 +83,6 @@ def test_what_iterates_is_not_unrolled() -> None:
 
 
 def test_names_that_a_language_would_join_stay_apart() -> None:
-    """The names of unrolled values differ from all other names."""
     taken = Let(real("a_right"), Y + 7)
     body = (taken, Let(A, X * ELBOW.symbol + Y))
     found = unroll(program(*body, outputs={"o": A, "t": taken.name}), (ELBOW,))

@@ -62,7 +62,6 @@ def test_nor_for_what_is_made_of_it_in_proportion() -> None:
     ids=str,
 )
 def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
-    """The division stays where another value reads sine or cosine."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, read), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
@@ -105,13 +104,11 @@ def test_a_sum_of_three_takes_one_new_angle() -> None:
 
 
 def test_two_new_angles_for_one_are_no_gain() -> None:
-    """A sum of angles is not used where it needs two arc tangents instead of one."""
     program = of(*SUM, axis(AXIS3, S12, C12), outputs=(AXIS3,))
     assert plain_directions(program) == program
 
 
 def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
-    """A rotated direction that is needed in any case gives its angle by an arc tangent."""
     program = of(
         *SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12)
     )

@@ -109,7 +109,6 @@ def test_the_reference_stays_on_the_half_circle_of_the_machine(half: str) -> Non
 @few
 @given(w=ANGLES, u=ANGLES)
 def test_an_arm_of_length_one_has_no_degenerate_case(w: float, u: float) -> None:
-    """A vector of length one always determines its angle, and nothing is divided."""
     known = problem(sp.cos(U + W) - E, sp.sin(U + W) - F, angles=(U,), known=(W,))
     binding = answer(pair, known)
     assert binding.conditioning is None
@@ -184,9 +183,6 @@ def triangle(first: sp.Expr, second: sp.Expr, third: sp.Expr) -> sp.Expr:
 
 @given(LENGTH, LENGTH, LENGTH)
 def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: float, reach: float) -> None:
-    """The missing amount of a triangle that does not close is the length by which its third side is too long or too
-    short.
-    """
     missing = max(reach - first - second, abs(first - second) - reach)
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(FIRST, SECOND, REACH), [])
@@ -211,14 +207,12 @@ def test_the_amount_is_the_larger_of_two_differences() -> None:
 
 @given(SIGNED, st.floats(0.0, 800.0))
 def test_a_length_is_so_much_too_short_for_another(left: float, reach: float) -> None:
-    """Where a length of either sign does not fit beside another, the difference of their sizes is missing."""
     assume(abs(left) > reach + 1e-6)
     reason = out_of_reach(Q, (REACH - LEFT) * (REACH + LEFT), [])
     assert abs(value(reason, left=left, reach=reach) - (abs(left) - reach)) < 1e-9 * abs(left)
 
 
 def test_a_product_that_is_no_triangle_has_no_amount() -> None:
-    """Four sums of lengths that are not Heron's have no amount, rather than a wrong one."""
     reason = out_of_reach(Q, (FIRST - SECOND) * (FIRST + SECOND) * (FIRST - REACH) * (FIRST + REACH), [])
     assert (reason.amount, reason.unit) == (None, Unit.NONE)
 

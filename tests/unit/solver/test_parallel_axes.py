@@ -58,7 +58,6 @@ def test_the_same_equations(name: str, turns: tuple[float, ...], x: float, y: fl
 
 @pytest.mark.parametrize("name", SUMS)
 def test_the_replaced_angle_leaves_all_but_plain_equations(name: str) -> None:
-    """An equation in which the angle stands outside sines and cosines waits for its whole turns."""
     total = the_sum(name)
     changed = substitute(CLOSURE, total)
     assert total.replaced not in changed.angles

@@ -78,7 +78,6 @@ def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
 @few
 @given(a=NUMBERS, b=NUMBERS, c=NUMBERS, sigma=st.sampled_from([1.0, -1.0]))
 def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: float, sigma: float) -> None:
-    """The rule solves the equations in either order, and with shifted right sides."""
     values, _ = execute(answer(polar, COMPASS).statements, {A: a, B: b, C: c, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
     size = hypot(b, a + c)
     assert abs(values["f"] * values["cos_v"] - b) <= max(1e-13 * size, AT_CENTRE)
@@ -89,7 +88,6 @@ def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: floa
 @few
 @given(f=NUMBERS, v=ANGLES, k=LENGTHS)
 def test_factors_of_the_radius(f: float, v: float, k: float) -> None:
-    """The rule solves equations whose radius has constant factors."""
     right = {A: k * f * cos(v), B: -2 * f * sin(v), K: k}
     for sigma in (1.0, -1.0):
         values, _ = execute(answer(polar, ELLIPSE).statements, {**right, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
