@@ -18,7 +18,7 @@ from tests.text.comparisons.initialization import initialize
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, asked, assert_same, is_close
 from tests.text.coupling.blocks import ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
 from tests.text.samples import HALF_TURN, NO_TURN, Rows, Sample, tilted
-from tests.text.units import compiled, public_methods
+from tests.text.units import public_methods
 
 INVALID = "SMC_TRAFO_INVALID_COUPLING"
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, 1.1e9)
@@ -161,13 +161,6 @@ COMPARISONS = COMMON | {
     "GetOrientationImageWithOri": with_orientation,
 }
 METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in public_methods(mechanism)]
-
-
-@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
-def test_every_method_is_here(mechanism: Mechanism) -> None:
-    methods = compiled(mechanism).objects[mechanism.block_name].methods
-    own = tuple(m.name for m in methods if m.access == "PUBLIC")
-    assert public_methods(mechanism)[: len(own)] == own
 
 
 @pytest.mark.long("IsCompatibleWithPosKin")

@@ -29,10 +29,6 @@ def program(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
     return normalise("program", lets, [Output(o.name, o) for o in outputs])
 
 
-def lets_of(one: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in one.lets()}
-
-
 def test_two_programs_share_what_is_hoisted() -> None:
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
@@ -50,7 +46,7 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
         Let(real("k"), (F - D) * X / (Y * (F - D) + 1)),
     )
     (shorter,), _ = lowered([program(*lets, outputs=(G, H, real("k")))], ())
-    found = lets_of(shorter)
+    found = values(shorter)
     assert found["f"] == -X * A - Y * B
     assert found["f_times_d"] == D * F and found["f_minus_d"] == F - D
 
@@ -58,7 +54,7 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
 def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
-    assert lets_of(shorter)["h"] == A * (F * Y - G * X)
+    assert values(shorter)["h"] == A * (F * Y - G * X)
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:

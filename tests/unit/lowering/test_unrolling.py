@@ -18,6 +18,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.unrolling import is_straight, unroll
 from tests.mechanisms import kinematics_of
+from tests.unit.answers import values
 
 pytestmark = pytest.mark.slow
 
@@ -35,13 +36,9 @@ def program(*body: Let | Require | Solve | Iterate, outputs: dict[str, sp.Expr])
     return Program("p", inputs, body, tuple(Output(n, v) for n, v in outputs.items()))
 
 
-def lets(program: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in program.lets()}
-
-
 def test_a_negative_is_not_computed_again() -> None:
     found = unroll(program(Let(A, Root(X) * ELBOW.symbol), outputs={"o": A + 1}), (ELBOW,))
-    assert lets(found) == {"a_right": Root(X)}
+    assert values(found) == {"a_right": Root(X)}
     assert {o.name: o.value for o in found.outputs}["o_left"] == 1 - real("a_right")
 
 
@@ -86,7 +83,7 @@ def test_names_that_a_language_would_join_stay_apart() -> None:
     taken = Let(real("a_right"), Y + 7)
     body = (taken, Let(A, X * ELBOW.symbol + Y))
     found = unroll(program(*body, outputs={"o": A, "t": taken.name}), (ELBOW,))
-    assert set(lets(found)) == {"a_right", "a_right_2", "a_left"}
+    assert set(values(found)) == {"a_right", "a_right_2", "a_left"}
     verify(found)
 
 

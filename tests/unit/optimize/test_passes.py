@@ -20,6 +20,7 @@ from derive.ir.verify import BrokenProgram
 from derive.lowering.scheduling import scheduled
 from derive.optimize.inline import inlined
 from derive.optimize.joining import joined
+from tests.unit.answers import values
 
 A, B, C, D, E, F, P, Q, R, X, Y, Z = (real(n) for n in "abcdefpqrxyz")
 FAR = Require(sp.Gt(X, Y), Status.UNREACHABLE)
@@ -28,10 +29,6 @@ FAR = Require(sp.Gt(X, Y), Status.UNREACHABLE)
 def body(program: Program) -> list[object]:
     """The names that are bound and the conditions, in order."""
     return [s.name if isinstance(s, Let) else s.condition for s in program.body]
-
-
-def values(program: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in program.lets()}
 
 
 def test_another_value_under_the_same_name_is_refused() -> None:

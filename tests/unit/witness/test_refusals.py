@@ -12,7 +12,7 @@ from derive.description.mechanism import Branch, Mechanism, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
-from derive.ir.program import Output, Program, Require, Status
+from derive.ir.program import Output
 from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
@@ -22,6 +22,7 @@ from derive.witness import Disagreement, inverse, witness
 from derive.work import STEPS, at_most
 from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.inventions import A1, A2, L1, L2, planar_arm
+from tests.unit.witness.test_witness import refusing
 
 
 @pytest.fixture(scope="module")
@@ -29,10 +30,6 @@ def arm() -> Kinematics:
     """An arm with two links in a plane, said to be searched along its first joint: its slots are what they were."""
     kinematics = build(validate(planar_arm()))
     return replace(kinematics, mechanism=replace(kinematics.mechanism, search=search(A1, where=L2)))
-
-
-def refusing(program: Program, condition: sp.Basic) -> Program:
-    return replace(program, body=(Require(condition, Status.UNREACHABLE), *program.body))
 
 
 def said_of(kinematics: Kinematics) -> str:
