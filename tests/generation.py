@@ -21,8 +21,6 @@ from tests.outside import output_of
 
 @dataclass(frozen=True)
 class Generation:
-    """What a fresh generation gives."""
-
     files: Mapping[str, bytes]
     evidence: Mapping[str, Evidence]
     """By mechanism."""

@@ -17,7 +17,6 @@ def catalogue() -> tuple[Entry, ...]:
 
 @cache
 def named(name: str) -> Mechanism:
-    """The mechanism of that name."""
     return next(mechanism for _, mechanism in catalogue() if mechanism.name == name)
 
 

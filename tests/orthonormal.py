@@ -40,6 +40,10 @@ def random_rotations(count: int, seed: int | Generator) -> Array:
     return np.asarray(matrices * np.linalg.det(matrices)[:, None, None])
 
 
+def rows(matrix: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(map(tuple, matrix.tolist()))
+
+
 def error(matrix: Array) -> float:
     """The largest entry of |R^T R - I|."""
     return float(np.abs(matrix.T @ matrix - np.eye(3)).max())
@@ -54,7 +58,6 @@ def repaired(matrix: Array) -> Array:
 
 
 def single(matrix: Array) -> Array:
-    """The matrix rounded to single precision."""
     return matrix.astype(np.float32).astype(np.float64)
 
 

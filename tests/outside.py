@@ -10,7 +10,6 @@ from typing import Any
 
 
 def temporary(purpose: str) -> Path:
-    """A new folder."""
     made = Path(mkdtemp(prefix=f"{purpose}-"))
     atexit.register(shutil.rmtree, made, ignore_errors=True)
     return made

@@ -119,7 +119,6 @@ def test_sources_that_change_during_a_run_leave_nothing_behind(
 def test_check_and_fresh_never_look(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`check` and `--fresh` do not read the cache."""
     generated(folder, capsys)
 
     def refuse(*_: object) -> None:
@@ -144,7 +143,6 @@ def test_continuous_integration_derives_everything() -> None:
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project of a few files."""
     for name in (
         "derive/solver/solve.py",
         "derive/mechanisms/kin_a.py",
@@ -166,7 +164,6 @@ FOUNDATIONS = (
 
 @pytest.mark.parametrize("name", FOUNDATIONS)
 def test_everything_stands_on_sources(project: Path, name: str) -> None:
-    """A change of a source, a template or the runtime invalidates all entries."""
     before = foundation(None, project)
     assert foundation(None, project) == before
     (project / name).write_text("x = 2\n")
@@ -176,7 +173,6 @@ def test_everything_stands_on_sources(project: Path, name: str) -> None:
 
 
 def test_a_description_is_no_foundation(project: Path) -> None:
-    """A change of one description does not invalidate the entries of others."""
     before = foundation(None, project)
     (project / "derive" / "mechanisms" / "kin_a.py").write_text("x = 2\n")
     assert foundation(None, project) == before
@@ -184,7 +180,6 @@ def test_a_description_is_no_foundation(project: Path) -> None:
 
 @pytest.mark.parametrize("what", ["profile", "library", "interpreter", "platform"])
 def test_everything_stands_on_what_runs_it(project: Path, monkeypatch: pytest.MonkeyPatch, what: str) -> None:
-    """A change of Python, of a library or of the platform invalidates all entries."""
     before = foundation(None, project)
     if what == "library":
         monkeypatch.setattr(caching, "_libraries", lambda: ("sympy 0",))
@@ -215,7 +210,6 @@ def test_a_description_counts_by_what_it_evaluates_to() -> None:
 
 
 def test_keys_tell_their_parts_apart() -> None:
-    """The key depends on how its text is divided into parts."""
     assert key_of("ab", "c") != key_of("a", "bc")
 
 

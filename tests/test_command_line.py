@@ -19,14 +19,6 @@ ROOT = MECHANISMS.parents[1]
 
 BROKEN: dict[str, tuple[str, str, str]] = {
     "no Python": ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((", "SyntaxError: "),
-    "an undefined name": ("Rz(A4)", "Rz(A9)", "NameError: name 'A9' is not defined"),
-    "a misspelt field": ("family=", "famliy=", "TypeError: .*'famliy'"),
-    "no description": ("MECHANISM =", "SCARA =", "defines no MECHANISM"),
-    "a parameter outside its range": (
-        "high=800.0, nominal=325.0",
-        "high=300.0, nominal=325.0",
-        r"parameter 'link_length_1': its nominal value 325 is outside its range \]0 \.\. 300\]",
-    ),
     "a default outside its range": (
         "low=-200.0, high=200.0",
         "low=5.0, high=200.0",
@@ -37,50 +29,17 @@ BROKEN: dict[str, tuple[str, str, str]] = {
         "offset_range=(720.0, -720.0)",
         r"joint 'A4': its offset_range \(720\.0, -720\.0\) is empty",
     ),
-    "a joint that is not the mechanism's": (
-        "joints=(A1, A2, A3, A4)",
-        "joints=(A1, A3, A4)",
-        "periods names 'A2', which is no multi-turn joint",
-    ),
-    "an unknown joint in the chain": (
-        "joints=(A1, A2, A3, A4),",
-        "joints=(A1, A2, A4),",
-        "chain reads 'a3', which is not a joint or a parameter of this mechanism",
-    ),
-    "an unknown joint in a branch": (
-        "sin(A2), right",
-        "sin(rotary('A7', 'another')), right",
-        "branch 'elbow' reads 'a7', which is not a joint or a parameter",
-    ),
     "a branch of no joint": (
         "sin(A2), right",
         "sin(L1), right",
         r"branch 'elbow': its indicator sin\(link_length_1\) depends on no joint",
     ),
-    "a branch with one side": ("left=-1", "left=+1", r"branch 'elbow' needs two names with the signs \+1 and -1"),
     "a branch that no root has": ("sin(A2), right", "sin(A1), right", "branch 'elbow': "),
-    "a joint that moves nothing": (
-        "Tz(A3 - P * A4 / TURN)",
-        "Tz(-P * A4 / TURN)",
-        "joint 'A3' occurs nowhere in the closure",
-    ),
-    "an under-constrained closure": (
-        'Task("xyz", Turning.ABOUT_Z)',
-        'Task("xyz")',
-        r"one joint too many: the task commands 3 quantities \(x, y, z\)",
-    ),
-    "the same joint twice": ("joints=(A1, A2, A3, A4)", "joints=(A1, A2, A3, A4, A1)", "joint 'A1' is given 2 times"),
-    "the same parameter twice": (
-        "parameters=(L1, L2, P)",
-        "parameters=(L1, L2, P, L1)",
-        "parameter 'link_length_1' is given 2 times",
-    ),
 }
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A catalogue of one correct mechanism."""
     mechanisms = tmp_path / "mechanisms"
     mechanisms.mkdir()
     (mechanisms / "right.py").write_text(SCARA.read_text().replace("Kin_Scara4_ZCcoupled_Type1", "Kin_Right"))
@@ -96,10 +55,9 @@ def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return message
 
 
-@pytest.mark.slow("no root has", "under-constrained")
+@pytest.mark.slow("no root has")
 @pytest.mark.parametrize("what", BROKEN)
 def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
-    """A broken description is refused with one message that names file and fault."""
     old, new, expected = BROKEN[what]
     text = SCARA.read_text()
     assert text.count(old) == 1
@@ -136,7 +94,6 @@ def test_two_classes_with_one_name(folder: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_no_traceback_and_exit_status_1(folder: Path) -> None:
-    """An error ends the command with status 1 and without a traceback."""
     (folder / "broken.py").write_text("from derive.mechanism import nothing\n")
     command = [sys.executable, "-m", "derive", "generate", "--mechanisms", str(folder), "--output", str(folder / "out")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -148,7 +105,6 @@ def test_no_traceback_and_exit_status_1(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Generating removes files that no mechanism gives, and checking reports them."""
     output = folder.parent / "generated"
     options = ("--mechanisms", str(folder), "--output", str(output))
     assert main(["generate", *options]) == 0
@@ -167,7 +123,6 @@ def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: py
 
 
 def test_a_folder_with_other_files_is_never_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A folder with files that were not generated is refused as output."""
     message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent)
     assert "holds 'mechanisms', which was not generated: it is not replaced" in message
     assert folder.exists()
@@ -208,7 +163,6 @@ def test_what_was_derived_travels_between_processes_unchanged() -> None:
 
 
 def test_by_products_are_no_orphans(tmp_path: Path) -> None:
-    """Files that Python tools write are not reported as orphans."""
     for name in ("a.py", "softkin.egg-info/PKG-INFO", "__pycache__/a.pyc", "build/lib/a.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")

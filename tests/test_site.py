@@ -36,7 +36,6 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[Path, Page]:
-    """All pages of the site, by their files."""
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, str(ROOT / "docs/site/build.py"), str(folder)]
     paths = {"PYTHONPATH": f"{ROOT}:{ROOT / 'generated/python'}", "PATH": ""}

@@ -35,13 +35,11 @@ LENGTH = 350
 @pytest.mark.slow("mypy")
 @pytest.mark.parametrize("tool", TOOLS)
 def test_clean(tool: str) -> None:
-    """The tool finds nothing to complain about."""
     done = subprocess.run([sys.executable, *TOOLS[tool]], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_no_generated_line_is_wider_than_a_page() -> None:
-    """No line of generated Python is longer than 120 columns."""
     wide = [
         f"{path.name}:{number}"
         for path in sorted((ROOT / "generated/python").rglob("*.py"))

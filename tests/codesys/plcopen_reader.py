@@ -15,7 +15,6 @@ Element = etree._Element
 
 
 def parse(path: Path) -> Element:
-    """The root of a file."""
     return etree.fromstring(path.read_bytes())
 
 

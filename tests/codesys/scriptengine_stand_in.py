@@ -28,8 +28,6 @@ class Refused(Exception):
 
 
 class Document:
-    """A text document: line ends are normalised."""
-
     def __init__(self, text: str = "") -> None:
         self.text = text
 
@@ -81,8 +79,6 @@ class Container(Tree):
 
 
 class Node(Tree):
-    """An object of the project."""
-
     parent: Tree
 
     def __init__(self, name: str, kind: str) -> None:
@@ -122,8 +118,6 @@ class Interface(Dut):
 
 
 class Code(Dut):
-    """An object with a declaration and an implementation."""
-
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name, kind)
         self.textual_implementation = Document()
@@ -155,8 +149,6 @@ class Pou(Code):
 
 
 class Message:
-    """A message of the compiler."""
-
     def __init__(self, severity: Severity, text: str, node: Any = None) -> None:
         self.severity, self.text, self._node = severity, text, node
         self.prefix, self.number = "C", 32
@@ -169,8 +161,6 @@ class Message:
 
 
 class LibraryManager(Node):
-    """The Library Manager of a project."""
-
     def __init__(self) -> None:
         super().__init__("Library_Manager", "libman")
         self.placeholders: dict[str, Any] = {}
@@ -180,8 +170,6 @@ class LibraryManager(Node):
 
 
 class Project(Container):
-    """A library project."""
-
     def __init__(self, engine: Engine, path: str) -> None:
         super().__init__()
         self._engine, self.path, self.is_saved = engine, path, False

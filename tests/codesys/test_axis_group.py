@@ -56,7 +56,6 @@ def test_a_program_asks_the_instance_of_the_group() -> None:
 
 
 def test_what_it_asks_changes_nothing() -> None:
-    """The instance of the group is the same after it as before."""
     library, ask, group = _asking("Softkin_Scara2_Z")
     arms = group.kinematics = library.new("Softkin_Scara2_Z")
     arms.dArmLength1, arms.dArmLength2 = 300.0, 250.0

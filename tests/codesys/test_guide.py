@@ -27,7 +27,6 @@ BLOCKS = {part.path: part for part in all_parts(FILES).values() if "." not in pa
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda p: p.split("\n")[0])
 def test_its_code_parses(program: str) -> None:
-    """The code in the guide parses, and uses only blocks that exist."""
     (found,) = parse(closed(program), "guide")
     assert isinstance(found, ast.Block)
     used = {v.type.text for s in found.sections for v in s.variables if v.type.text.startswith(("Softkin_", "Kin_"))}
@@ -81,7 +80,6 @@ OVERVIEW = (OUTPUT / "st" / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_overview_lists_every_block() -> None:
-    """The overview lists every block with its file and the axes that the block declares."""
     row = r"^\| \[`(\w+)`\]\((\S+)\.st\) \| \[picture\]\(pictures/\1\.png\) \| ([^|]+) \| ([^|]+) \|"
     rows = re.findall(row, OVERVIEW, re.MULTILINE)
     assert {f"{path}.st" for _, path, _, _ in rows} == {

@@ -101,7 +101,6 @@ def imported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Project, str]:
 
 @pytest.mark.slow
 def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
-    """The script makes a library that holds every object with its text, and compiles it."""
     project, printed = imported
     assert project.is_saved and Path(project.path).exists()
     assert vars(project.information) == {"title": "Softkin", "company": "Softkin", "version": "0.1.0.0"}
@@ -116,7 +115,6 @@ def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
 
 @pytest.mark.slow
 def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None:
-    """The script adds to the library exactly the pictures that descriptions refer to."""
     project, _ = imported
     referred = [name for text in FILES.values() for name in re.findall(r"^\.\. image:: @\((.+)\)$", text, re.MULTILINE)]
     assert sorted(referred) == sorted(project.external_files)
@@ -144,7 +142,6 @@ def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
 
 @pytest.mark.slow
 def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
-    """The libraries of the manufacturer are referred to by placeholders for their newest version."""
     (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
     assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {
         t: (t, (4, 20, 0, 0)) for t in TITLES
@@ -176,7 +173,6 @@ def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
 
 
 def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Errors of the compiler are printed, and the script returns 1."""
     script = _copy(tmp_path, "refusal := '';", "initialised := '';")
     engine = Engine(TITLES)
     assert execute(engine, str(tmp_path / "a.library"), script=script) == 1
@@ -187,7 +183,6 @@ def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_a_dialog_asks_for_the_path(tmp_path: Path) -> None:
-    """Without an argument the script asks for the path of the library in a dialog."""
     target = tmp_path / "asked.library"
     assert execute(Engine(TITLES, str(target)), script=_copy(tmp_path)) == 0
     assert target.exists()
@@ -229,7 +224,6 @@ def test_away_from_its_files_it_says_so(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_it_is_python_2_7() -> None:
-    """The script is valid in Python 2.7, which CODESYS executes."""
     assert beyond_python27(SCRIPT.read_text(encoding="utf-8")) == []
 
 
@@ -243,5 +237,4 @@ def test_it_is_python_2_7() -> None:
     ],
 )  # fmt: skip
 def test_what_is_newer_is_seen(newer: str) -> None:
-    """The check for Python 2.7 finds syntax that is newer."""
     assert beyond_python27(newer) != []

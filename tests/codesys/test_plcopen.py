@@ -16,7 +16,6 @@ from derive.emit.plcopen.objects import Object, objects_of
 from tests.codesys.parts import FILES, SAMPLES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables
-from tests.harness.library import compile_st
 from tests.harness.parse import parse as parse_st
 
 ROOT = OUTPUT / "st"
@@ -47,12 +46,10 @@ def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
 
 @pytest.mark.parametrize("name", [*UNITS, "softkin"])
 def test_valid(name: str) -> None:
-    """The file is valid by the schema of PLCopen."""
     assert errors((ROOT / f"{name}.xml").read_text(encoding="utf-8")) == []
 
 
 def test_the_schema_sees_what_is_wrong() -> None:
-    """The schema refuses a wrong keyword, a wrong element, and a missing attribute."""
     text = EVERYTHING.read_text(encoding="utf-8")
     for old, new in (('pouType="function"', 'pouType="routine"'), ("localVars", "lokalVars"), (' upper="3"', "")):
         assert errors(text.replace(old, new))
@@ -68,14 +65,6 @@ def test_everything_reads_back_to_the_text_of_the_files() -> None:
     expected = {k: Part(p.kind, p.path, p.declaration or _GETTER, p.implementation) for k, p in wanted.items()}
     assert read == expected
     assert len(read) > 600
-
-
-@pytest.mark.slow
-def test_what_is_read_back_compiles() -> None:
-    """The stand-in compiler takes the text from the XML as it takes the files, all methods and interfaces included."""
-    read = wholes(parse(EVERYTHING))
-    library = compile_st({name: whole.text() for name, whole in read.items()})
-    assert set(library.objects) == set(read) == {p.path for p in all_parts(FILES).values() if "." not in p.path}
 
 
 def test_folders_are_those_of_the_files() -> None:
@@ -106,14 +95,6 @@ def test_a_mechanism_comes_with_just_what_it_needs(unit: str) -> None:
 
 def _code(text: str) -> str:
     return re.sub(r"\(\*.*?\*\)|//[^\n]*|'[^']*'", "", text, flags=re.DOTALL)
-
-
-@pytest.mark.parametrize("unit", ["gantry/Softkin_Gantry2", "parallel/Kin_Hexapod", "polar/Kin_Crane"])
-def test_a_mechanism_alone_compiles(unit: str) -> None:
-    """The objects in the file of a mechanism compile without any other file."""
-    read = wholes(parse(ROOT / f"{unit}.xml"))
-    library = compile_st({name: whole.text() for name, whole in read.items()})
-    assert unit.split("/")[1] in library.objects
 
 
 def test_an_object_has_one_identifier_everywhere() -> None:
@@ -250,7 +231,6 @@ def test_kinds_that_no_mechanism_has_yet(tmp_path: Path) -> None:
 
 
 def test_text_survives_whatever_is_in_it(tmp_path: Path) -> None:
-    """Text with any character of the markup comes out of the file unchanged."""
     code = "// a < b & c > d ]]> \"quoted\" 'single'\n  indented := TRUE;  // tail\n\nlast := 1;"
     one = Object("FUNCTION", "Odd", "FUNCTION Odd : BOOL\nVAR\n  last : INT := 1;  // a < b & 'c'\nEND_VAR", code)
     path = tmp_path / "odd.xml"

@@ -34,8 +34,6 @@ class Said:
 
 @dataclass(frozen=True)
 class Folder:
-    """The folder, and the commands in it."""
-
     path: Path
     capsys: pytest.CaptureFixture[str]
 

@@ -87,6 +87,5 @@ def test_a_mesh_is_refused(case: str, tmp_path: Path, capsys: pytest.CaptureFixt
 
 @pytest.mark.parametrize("files", [[], ["one.py", "two.py"]], ids=["the catalogue", "two machines"])
 def test_a_mesh_belongs_to_one_machine(files: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """A body is that of one machine."""
     assert main(["view", *files, "--model", "A1=arm.glb"]) == 2
     assert "--model names a body of one machine" in capsys.readouterr().err

@@ -18,8 +18,6 @@ CLEARED = "\r\033[K"
 
 
 class Terminal(StringIO):
-    """A stream that says it is a terminal."""
-
     def isatty(self) -> bool:
         return True
 

@@ -23,8 +23,6 @@ Message = dict[str, Any]
 
 @dataclass
 class Served:
-    """A server, and what it has said."""
-
     task: asyncio.Task[None]
     said: list[str] = field(default_factory=list)
 

@@ -20,7 +20,6 @@ NODES = {"axes": {"X": POSITION, "Y": {"node": SYMBOL, "scale": 10}}}
 
 @pytest.fixture(autouse=True)
 def credentials(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The user, as the environment has it."""
     monkeypatch.setenv("SOFTKIN_USER", USER)
     monkeypatch.setenv("SOFTKIN_PASSWORD", PASSWORD)
 

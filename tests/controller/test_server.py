@@ -43,33 +43,13 @@ def told(tmp_path: Path) -> Settings:
 
 
 async def test_who_is_let_in(told: Settings) -> None:
-    """The page of this server with the token of this run, and nobody else."""
+    """The page of this server with the token of this run; all others are those of `test_trust`."""
     async with served(told, source=Given()) as running:
         port = running.origin.rpartition(":")[2]
         assert await refused(running) == 101
-        for origin in (
-            None,
-            "null",
-            "http://evil.example",
-            "https://127.0.0.1:" + port,
-            "http://127.0.0.1",
-            f"http://localhost:{port}",
-            f"http://127.0.0.1.evil.example:{port}",
-            f"http://127.0.0.1:{int(port) - 1}",
-        ):
+        for origin in (None, "http://evil.example", f"http://127.0.0.1:{int(port) - 1}"):
             assert await refused(running, Origin=origin) == 403, origin
-        shown = f"token.{running.token}"
-        for protocols in (
-            None,
-            "softkin.live.1",
-            shown,
-            "softkin.live.1, token.",
-            f"softkin.live.1, {shown[:-1]}",
-            f"softkin.live.1, {shown}x",
-            f"softkin.live.1, {running.token}",
-            f"softkin.live.2, {shown}",
-            "softkin.live.1, token.é",
-        ):
+        for protocols in (None, f"softkin.live.1, token.{running.token}x", "softkin.live.1, token.é"):
             assert await refused(running, Sec_WebSocket_Protocol=protocols) == 403, protocols
         host = f"evil.example:{port}"
         assert await refused(running, Host=host, Origin=f"http://{host}") == 403, "a name bent to this address"

@@ -234,7 +234,6 @@ def test_addresses_that_are_none(text: str, said: str) -> None:
 
 
 def told(address: str, security: Security) -> Settings:
-    """Settings of two axes at an address."""
     machine = machine_of("Kin_Gantry2", None, None)
     return Settings(machine, (Channel("X", "x"), Channel("Y", "y")), address_of(address, Path()), security)
 

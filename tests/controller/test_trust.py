@@ -89,14 +89,18 @@ def test_other_hosts(host: str | None, local: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "origin", [None, "", "null", "http://", "http://localhost:8000", "file://", "http://127.0.0.1"]
-)
+    "origin", [None, "", "null", "http://", "http://localhost:8000", "file://", "http://127.0.0.1",
+               "https://127.0.0.1:8000", "http://127.0.0.1.evil.example:8000", "http://127.0.0.1:7999"]
+)  # fmt: skip
 def test_other_origins(origin: str | None) -> None:
     """The origin is that of the page that this server serves, to the letter."""
     assert refusal("127.0.0.1:8000", origin, SHOWN, "127.0.0.1", TOKEN)
 
 
-@pytest.mark.parametrize("shown", [None, "", "softkin.live.1", f"token.{TOKEN}", "softkin.live.1,token.", SHOWN + "0"])
+@pytest.mark.parametrize(
+    "shown", [None, "", "softkin.live.1", f"token.{TOKEN}", "softkin.live.1,token.", SHOWN + "0", SHOWN[:-1],
+              f"softkin.live.1, {TOKEN}", f"softkin.live.2, token.{TOKEN}"]
+)  # fmt: skip
 def test_other_tokens(shown: str | None) -> None:
     """Without the token of this run there is nothing; what is refused does not tell it."""
     said = refusal("127.0.0.1:8000", "http://127.0.0.1:8000", shown, "127.0.0.1", TOKEN)

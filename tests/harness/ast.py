@@ -152,16 +152,8 @@ class If(Placed):
 
 
 @node
-class Label(Placed):
-    """A value of a CASE, or a range of values when upper is given."""
-
-    lower: Expression
-    upper: Expression | None
-
-
-@node
 class CaseBranch:
-    labels: tuple[Label, ...]
+    labels: tuple[Expression, ...]
     body: tuple[Statement, ...]
 
 
@@ -182,12 +174,6 @@ class For(Placed):
 
 
 @node
-class While(Placed):
-    condition: Expression
-    body: tuple[Statement, ...]
-
-
-@node
 class Exit(Placed): ...
 
 
@@ -195,7 +181,7 @@ class Exit(Placed): ...
 class Return(Placed): ...
 
 
-Statement = Assign | CallStatement | If | Case | For | While | Exit | Return
+Statement = Assign | CallStatement | If | Case | For | Exit | Return
 
 
 @node
@@ -243,8 +229,6 @@ class HasSections:
 
 @node
 class _Object:
-    """What every object of a text has."""
-
     kind: str
     name: str
     pragmas: tuple[str, ...]
@@ -274,8 +258,6 @@ class PropertyDeclaration(Placed):
 
 @node
 class Block(_Object, HasSections):
-    """A FUNCTION_BLOCK or a PROGRAM."""
-
     extends: str | None
     implements: tuple[str, ...]
     sections: tuple[Section, ...]

@@ -40,9 +40,6 @@ class Statements:
                 self._case(node)
             case ast.For():
                 self._for(node)
-            case ast.While():
-                self._condition(node.condition)
-                self._loop(node.body)
             case ast.Exit():
                 if not self.loops:
                     raise StError(node.at, "EXIT outside a loop")
@@ -59,11 +56,6 @@ class Statements:
         if isinstance(target, types.Block):
             raise StError(node.at, "an instance of a block cannot be assigned")
 
-    def _loop(self, body: tuple[ast.Statement, ...]) -> None:
-        self.loops += 1
-        self.check(body)
-        self.loops -= 1
-
     def _for(self, node: ast.For) -> None:
         control = self.expressions.type_of(node.control)
         if not isinstance(control, types.Integer) or control.is_bits or not isinstance(node.control, ast.Name):
@@ -74,7 +66,9 @@ class Statements:
                 self.expressions.must_fit(part, control)
         if node.step is not None and constants.evaluate(node.step, self.scope.meaning) in (None, 0):
             raise StError(node.at, "BY needs a constant that is not 0")
-        self._loop(node.body)
+        self.loops += 1
+        self.check(node.body)
+        self.loops -= 1
 
     def _case(self, node: ast.Case) -> None:
         subject = self.expressions.type_of(node.subject)
@@ -87,18 +81,15 @@ class Statements:
             self.check(branch.body)
         self.check(node.otherwise)
 
-    def _label(self, label: ast.Label, subject: types.Type, seen: set[constants.Value]) -> None:
-        for part in (label.lower, label.upper):
-            if part is None:
-                continue
-            if common(self.expressions.type_of(part), subject) != subject:
-                raise StError(label.at, f"the label does not fit {subject.name}")
-            value = constants.evaluate(part, self.scope.meaning)
-            if value is None:
-                raise StError(label.at, "a label must be a constant")
-            if value in seen:
-                raise StError(label.at, "the label occurs twice")
-            seen.add(value)
+    def _label(self, label: ast.Expression, subject: types.Type, seen: set[constants.Value]) -> None:
+        if common(self.expressions.type_of(label), subject) != subject:
+            raise StError(label.at, f"the label does not fit {subject.name}")
+        value = constants.evaluate(label, self.scope.meaning)
+        if value is None:
+            raise StError(label.at, "a label must be a constant")
+        if value in seen:
+            raise StError(label.at, "the label occurs twice")
+        seen.add(value)
 
 
 NATIVE = "{attribute 'native'}"

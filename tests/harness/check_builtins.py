@@ -8,7 +8,7 @@ from .conversions import common, conversion, fits
 from .faults import StError
 from .lexical import QUERY
 
-REAL_FUNCTIONS = {"SQRT", "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "EXP", "LN"}
+REAL_FUNCTIONS = {"SQRT", "SIN", "COS", "ATAN"}
 _COUNTS = {"ABS": (1, 1), "TRUNC": (1, 1), "MIN": (2, 9), "MAX": (2, 9), "SEL": (3, 3), "LIMIT": (3, 3), "LEFT": (2, 2)}
 
 

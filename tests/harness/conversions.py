@@ -53,7 +53,6 @@ def common(left: types.Type, right: types.Type) -> types.Type | None:
 
 
 def conversion(name: str) -> tuple[types.Type, types.Type] | None:
-    """Source and target of a conversion function X_TO_Y."""
     match = _CONVERSION.match(name.upper())
     if match is None:
         return None

@@ -109,7 +109,6 @@ class Instance:
         return self.origin.run(function, arguments), _opened(holders)
 
     def get(self, name: str) -> Any:
-        """Read a property."""
         return self.origin.run(getattr(self, python_names.getter(name)), [])
 
     def __call__(self, /, **inputs: Any) -> None:

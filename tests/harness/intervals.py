@@ -61,7 +61,6 @@ def is_written(variable: types.Variable, body: tuple[ast.Statement, ...], facts:
 
 
 def _bodies(statement: ast.Statement) -> list[tuple[ast.Statement, ...]]:
-    """The statements inside a statement."""
     if isinstance(statement, ast.If | ast.Case):
         return [*(branch.body for branch in statement.branches), statement.otherwise]
-    return [statement.body] if isinstance(statement, ast.For | ast.While) else []
+    return [statement.body] if isinstance(statement, ast.For) else []

@@ -16,7 +16,7 @@ from .facts import Facts, Scope
 from .faults import Place, StError
 from .initial_values import default, initial, is_inlined
 from .parse import parse
-from .translate_statements import Source, Statements
+from .translate_statements import Source, Statements, assignment
 from .universe import Universe
 
 
@@ -78,7 +78,7 @@ class _Translator:
         add("    pass")
         add("def _assign(self, other):")
         for field, variable in zip(names, struct.fields.values(), strict=True):
-            add(f"    {_assignment(f'self.{field}', f'other.{field}', variable.type)}")
+            add(f"    {assignment(f'self.{field}', f'other.{field}', variable.type)}")
         add("    pass")
         add("def _copy(self):")
         add(f"    new = object.__new__({name})")
@@ -154,7 +154,7 @@ class _Translator:
                 own, target = python_names.local(variable.name), _parameter(variable)
                 value = f"{own}.value" if variable in self.facts.boxed else own
                 place = f"{target}.value" if types.is_scalar(variable.type) else target
-                lines.append(f"if {target} is not None: {_assignment(place, value, variable.type)}")
+                lines.append(f"if {target} is not None: {assignment(place, value, variable.type)}")
         if scope.result is None:
             return [*lines, "return"]
         own = python_names.local(scope.result.name)
@@ -164,14 +164,6 @@ class _Translator:
 def _parameter(variable: types.Variable) -> str:
     prefix = "output_" if variable.scope == "VAR_OUTPUT" else ""
     return prefix + python_names.local(variable.name)
-
-
-def _assignment(target: str, value: str, of: types.Type) -> str:
-    if types.is_scalar(of):
-        return f"{target} = {value}"
-    if isinstance(of, types.Array):
-        return f"{target}[:] = {value}" if types.is_scalar(of.element) else f"assign_elements({target}, {value})"
-    return f"{target}._assign({value})"
 
 
 def _copied(name: str, of: types.Type) -> str:
@@ -199,7 +191,6 @@ class Layer:
         return Layer(universe, source)
 
     def whole(self) -> Source:
-        """The source with the globals."""
         source = Source(self.source.lines[:], self.source.places[:])
         globals_of(self.universe, source)
         return source

@@ -55,7 +55,6 @@ class Translated:
 
     @cached_property
     def python(self) -> str:
-        """The translation."""
         return "\n".join(self.source.lines)
 
     @cached_property
@@ -178,7 +177,6 @@ class Library:
         return [False] * (len(self.origin.places) + 1)
 
     def constant(self, name: str) -> Any:
-        """The value of a global variable or constant."""
         found = self._universe.find_path(name)
         if not isinstance(found, types.Variable):
             raise KeyError(f"{name} is no global variable")

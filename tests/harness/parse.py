@@ -49,19 +49,11 @@ def _if(tree: Tree, node: Node) -> ast.Statement:
     return ast.If(tuple(branches), _else_of(tree, node), at=tree.at(node))
 
 
-def _label(tree: Tree, node: Node) -> ast.Label:
-    value = named(node)[0]
-    if value.type == "subrange":
-        lower, upper = part(tree, value, "lower"), part(tree, value, "upper")
-        return ast.Label(lower, upper, at=tree.at(node))
-    return ast.Label(expression(tree, value), None, at=tree.at(node))
-
-
 def _case(tree: Tree, node: Node) -> ast.Statement:
     branches = []
     for clause in named(node):
         if clause.type == "case_clause":
-            labels = tuple(_label(tree, c) for c in named(clause) if c.type == "case_value")
+            labels = tuple(expression(tree, named(c)[0]) for c in named(clause) if c.type == "case_value")
             branches.append(ast.CaseBranch(labels, body(tree, clause)))
     subject = part(tree, node, "subject")
     return ast.Case(subject, tuple(branches), _else_of(tree, node), at=tree.at(node))
@@ -77,14 +69,12 @@ _READERS: dict[str, Callable[[Tree, Node], ast.Statement]] = {
     "if_statement": _if,
     "case_statement": _case,
     "for_statement": reader(ast.For, control=part, start=part, end=part, step=_step, body=body),
-    "while_statement": reader(ast.While, condition=part, body=body),
     "exit_statement": reader(ast.Exit),
     "return_statement": reader(ast.Return),
 }
 
 
 def parse(text: str, file: str) -> list[ast.Declaration]:
-    """All declarations of a text in their order."""
     refuse_words(text, file)
     return [declaration for piece in split(text, file) for declaration in _object(piece, file)]
 

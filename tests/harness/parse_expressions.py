@@ -19,7 +19,6 @@ def expression(tree: Tree, node: Node) -> ast.Expression:
 
 
 def part(tree: Tree, node: Node, name: str) -> ast.Expression:
-    """The expression of a field."""
     return expression(tree, field(node, name))
 
 
@@ -48,8 +47,7 @@ def _parenthesized(tree: Tree, node: Node) -> ast.Expression:
 def _integer(tree: Tree, node: Node) -> ast.Expression:
     digits = tree.text(node).replace("_", "").replace(" ", "")
     if "#" in digits:
-        base, digits = digits.split("#")
-        return ast.Literal(int(digits, int(base)), at=tree.at(node))
+        raise tree.refuse(node, f"the literal {digits} is not part of the dialect")
     return ast.Literal(int(digits), at=tree.at(node))
 
 

@@ -30,13 +30,11 @@ class Piece:
 
 
 def comment_text(comments: list[str]) -> str:
-    """The words of comments without their marks."""
     plain = (c[2:] if c.startswith("//") else c[2:-2] for c in comments)
     return "\n".join(part.strip() for part in plain).strip()
 
 
 def split(text: str, file: str) -> list[Piece]:
-    """The objects of a text in their order."""
     return _Splitter(text, file).objects()
 
 

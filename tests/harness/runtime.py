@@ -215,7 +215,6 @@ def selected(choice: bool, if_false: Any, if_true: Any) -> Any:
 
 # ---- references to interfaces --------------------------------------------------------------
 def referred(instance: Any) -> Any:
-    """The instance that an interface refers to."""
     if instance is None:
         raise StFault("a call through an interface that refers to nothing")
     return instance

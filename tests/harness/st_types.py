@@ -130,7 +130,6 @@ class Interface:
         return found or next((m for m in (base.method(name) for base in self.bases) if m is not None), None)
 
     def all(self) -> frozenset[Interface]:
-        """The interface and all it extends."""
         return frozenset({self}).union(*(base.all() for base in self.bases))
 
 
@@ -182,15 +181,13 @@ Type = (
 BOOL = Boolean()
 BYTE = Integer("BYTE", 0, 255, 1, is_bits=True)
 DWORD = Integer("DWORD", 0, 2**32 - 1, 4, is_bits=True)
-SINT = Integer("SINT", -128, 127, 1)
-USINT = Integer("USINT", 0, 255, 1)
 INT = Integer("INT", -(2**15), 2**15 - 1, 2)
 UINT = Integer("UINT", 0, 2**16 - 1, 2)
 DINT = Integer("DINT", -(2**31), 2**31 - 1, 4)
 UDINT = Integer("UDINT", 0, 2**32 - 1, 4)
 LREAL = Real()
 NOTHING = NoResult()
-ELEMENTARY: dict[str, Type] = {t.name: t for t in (BOOL, BYTE, DWORD, SINT, USINT, INT, UINT, DINT, UDINT, LREAL)}
+ELEMENTARY: dict[str, Type] = {t.name: t for t in (BOOL, BYTE, DWORD, INT, UINT, DINT, UDINT, LREAL)}
 
 
 def is_scalar(of: Type) -> bool:

@@ -70,7 +70,6 @@ def _syntax_error(tree: Tree, node: Node) -> StError:
 
 
 def named(node: Node) -> list[Node]:
-    """The named children without comments and pragmas."""
     return [child for child in node.named_children if child.type not in ("comment", "pragma")]
 
 

@@ -74,7 +74,6 @@ END_PROGRAM
 
 
 def user(body: str = "") -> Any:
-    """The program with some statements."""
     text = {"a": COUNTS, "b": FURTHER, "c": BASE, "d": TWICE, "e": TOO, "User": USER.replace("{body}", body)}
     return compile_st(text).new("User")
 

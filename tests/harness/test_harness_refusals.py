@@ -72,7 +72,9 @@ BODIES = {
     "NOT of a number": ("b := NOT n;", "does not take"),
     "MOD of reals": ("x := x MOD 2.0;", "not allowed"),
     "condition not BOOL": ("IF n THEN x := 1.0; END_IF", "not BOOL"),
-    "WHILE condition not BOOL": ("WHILE x DO x := 1.0; END_WHILE", "not BOOL"),
+    "WHILE": ("WHILE b DO x := 1.0; END_WHILE", "while_statement is not part of the dialect"),
+    "CASE over a range": ("CASE n OF 1..2: i := 1; END_CASE", "is not part of the dialect"),
+    "a literal of base 16": ("n := 16#FF;", "16#FF is not part of the dialect"),
     "FOR over a real": ("FOR x := 0 TO 3 DO n := 1; END_FOR", "FOR"),
     "FOR bound of wrong type": ("FOR n := 0 TO x DO b := TRUE; END_FOR", "does not fit"),
     "FOR step 0": ("FOR n := 0 TO 3 BY 0 DO b := TRUE; END_FOR", "BY"),
@@ -110,7 +112,7 @@ BODIES = {
     "power": ("x := x ** 2.0;", "**"),
     "AND_THEN": ("b := b AND_THEN b;", "AND_THEN"),
     "OR_ELSE": ("b := b OR_ELSE b;", "OR_ELSE"),
-    "CONTINUE": ("WHILE b DO CONTINUE; END_WHILE", "CONTINUE"),
+    "CONTINUE": ("FOR n := 0 TO 3 DO CONTINUE; END_FOR", "CONTINUE"),
     "nested comment": ("(* a (* b *) c *)", "nested comment"),
     "chained assignment": ("x := x := 1.0;", "syntax error"),
     "assignment to a call": ("Callee(1.0, fr.vT) := 1.0;", "not a variable"),
@@ -155,7 +157,6 @@ READ = {
 
 
 def reading(v: str, w: str) -> str:
-    """A function that hands two values on."""
     variables = "  x : LREAL; many : ARRAY[0..8] OF LREAL; f : SMC_Frame; p : POINTER TO ARRAY[0..8] OF LREAL;"
     constants = "  ONE : LREAL := 1.0; TABLE : ARRAY[0..8] OF LREAL := [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];"
     head = f"FUNCTION Probe : LREAL\nVAR CONSTANT\n{constants}\nEND_VAR\nVAR\n{variables}\nEND_VAR\n"
@@ -164,7 +165,6 @@ def reading(v: str, w: str) -> str:
 
 @pytest.mark.parametrize("name", READ)
 def test_a_constant_reference_needs_a_variable(name: str) -> None:
-    """A VAR_IN_OUT CONSTANT takes a variable, its member or its element, and nothing else."""
     assert "needs a variable" in refused(reading(*READ[name]))
 
 
@@ -317,6 +317,5 @@ def test_the_message_names_file_and_line() -> None:
 
 
 def test_the_line_of_a_member_is_right() -> None:
-    """A refusal inside a member names the line in the file, behind comments of several lines, too."""
     text = BLOCK.format(members="(* note\n *)\n" + method("\nnOwn := TRUE;"))
     assert refused(text).startswith("probe.st:10: ")

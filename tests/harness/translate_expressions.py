@@ -51,7 +51,6 @@ class Expressions:
         return False
 
     def _unchecked(self, node: ast.Expression) -> str:
-        """Source of a real operand whose test can wait."""
         given = self.facts.type_of[node]
         return literal(given.value, types.LREAL) if isinstance(given, types.IntegerLiteral) else self._raw(node)
 
@@ -255,8 +254,7 @@ class Expressions:
     def _builtin(self, node: ast.Call, name: str) -> str:
         of = self.facts.type_of[node]
         if name in REAL_FUNCTIONS:
-            python = "log" if name == "LN" else name.lower()
-            return f"math.{python}({self.value(node.arguments[0].value, types.LREAL)})"
+            return f"math.{name.lower()}({self.value(node.arguments[0].value, types.LREAL)})"
         if name == "TRUNC":
             return self._in_range(f"truncated({self.value(node.arguments[0].value)})", of)
         pair = conversion(name)

@@ -25,6 +25,15 @@ class Source:
         self.places.append(at)
 
 
+def assignment(target: str, value: str, of: types.Type) -> str:
+    """Structures, matrices and arrays change in place, so that references to them stay good."""
+    if types.is_scalar(of):
+        return f"{target} = {value}"
+    if isinstance(of, types.Array):
+        return f"{target}[:] = {value}" if types.is_scalar(of.element) else f"assign_elements({target}, {value})"
+    return f"{target}._assign({value})"
+
+
 class Statements:
     def __init__(self, source: Source, scope: Scope, facts: Facts, leave: list[str]) -> None:
         self.source = source
@@ -55,8 +64,6 @@ class Statements:
                 self._case(node)
             case ast.For():
                 self._for(node)
-            case ast.While():
-                self._while(node)
             case ast.Exit():
                 self.source.add("break", node.at)
             case ast.Return():
@@ -64,19 +71,12 @@ class Statements:
                     self.source.add(line, node.at)
 
     def _store(self, target: ast.Expression, value: str, at: Place) -> None:
-        """Structures, matrices and arrays change in place, so that references to them stay good."""
         of = self.facts.type_of[target]
         if isinstance(target, ast.Index) and isinstance(target.object, ast.Dereference):
             pointer, offset = self.code.value(target.object.pointer), self.code.offset(target)
             self.source.add(f"poke({pointer}, {offset}, {value})", at)
-        elif isinstance(of, (types.Struct, types.Opaque)):
-            self.source.add(f"{self.code.value(target)}._assign({value})", at)
-        elif isinstance(of, types.Array):
-            place = self.code.value(target)
-            whole = f"{place}[:] = {value}" if types.is_scalar(of.element) else f"assign_elements({place}, {value})"
-            self.source.add(whole, at)
         else:
-            self.source.add(f"{self.code.value(target)} = {value}", at)
+            self.source.add(assignment(self.code.value(target), value, of), at)
 
     # ---- calls of instances ------------------------------------------------------------
     def _call(self, node: ast.CallStatement) -> None:
@@ -97,13 +97,7 @@ class Statements:
         if parameter.is_reference:
             self.source.add(f"{place} = {self.code.reference(given)}", given.at)
             return
-        value = self.code.value(given, parameter.type)
-        if types.is_scalar(parameter.type):
-            self.source.add(f"{place} = {value}", given.at)
-        elif isinstance(parameter.type, types.Array):
-            self.source.add(f"{place}[:] = {value}", given.at)
-        else:
-            self.source.add(f"{place}._assign({value})", given.at)
+        self.source.add(assignment(place, self.code.value(given, parameter.type), parameter.type), given.at)
 
     # ---- control -----------------------------------------------------------------------
     def _if(self, node: ast.If) -> None:
@@ -121,36 +115,14 @@ class Statements:
         self.source.add(f"{subject} = {self.code.value(node.subject)}", node.at)
         word = "if"
         for branch in node.branches:
-            tests = " or ".join(self._label(subject, label) for label in branch.labels)
+            values = (constants.evaluate(label, self.scope.meaning) for label in branch.labels)
+            tests = " or ".join(f"{subject} == {literal(value, types.DINT)}" for value in values)
             self.source.add(f"{word} {tests}:", branch.labels[0].at)
             self.body(branch.body)
             word = "elif"
         if node.otherwise:
             self.source.add("else:" if node.branches else "if True:")
             self.body(node.otherwise)
-
-    def _label(self, subject: str, label: ast.Label) -> str:
-        lower = self._constant(label.lower)
-        if label.upper is None:
-            return f"{subject} == {lower}"
-        return f"{lower} <= {subject} <= {self._constant(label.upper)}"
-
-    def _constant(self, node: ast.Expression) -> str:
-        return literal(constants.evaluate(node, self.scope.meaning), types.DINT)
-
-    def _passes(self, condition: str, body: tuple[ast.Statement, ...], at: Place, last: str = "") -> None:
-        """The passes of a loop, the last line of each, and the fault of one that does not end."""
-        self.source.add(f"for _ in range({LOOP_CAP + 1}):", at)
-        self.source.depth += 1
-        self.source.add(f"if not {condition}: break", at)
-        self.source.depth -= 1
-        self.body(body)
-        if last:
-            self.source.add(f"    {last}", at)
-        self.source.add("else: unbounded()", at)
-
-    def _while(self, node: ast.While) -> None:
-        self._passes(f"({self.code.value(node.condition)})", node.body, node.at)
 
     def _for(self, node: ast.For) -> None:
         self.loops += 1
@@ -165,7 +137,11 @@ class Statements:
         advanced = f"(_i if {of.low} <= (_i := {control} + {step}) <= {of.high} else overflow(_i))"
         condition = f"{control} {'<=' if step > 0 else '>='} {stop}"
         if of.high - of.low >= LOOP_CAP or not self._is_counted(node):
-            self._passes(condition, node.body, node.at, f"{control} = {advanced}")
+            self.source.add(f"for _ in range({LOOP_CAP + 1}):", node.at)
+            self.source.add(f"    if not {condition}: break", node.at)
+            self.body(node.body)
+            self.source.add(f"    {control} = {advanced}", node.at)
+            self.source.add("else: unbounded()", node.at)
             return
         past = f"{stop} {'+' if step > 0 else '-'} 1"
         self.source.add(f"for {control} in range({control}, {past}{'' if step == 1 else f', {step}'}):", node.at)

@@ -20,7 +20,6 @@ class Universe:
         self.globals: list[types.Variable] = []
 
     def copy(self) -> Universe:
-        """The same objects, to which others can be added."""
         other = Universe()
         other.spaces = {key: types.Namespace(space.name, dict(space.entries)) for key, space in self.spaces.items()}
         other.globals = self.globals[:]

@@ -55,7 +55,6 @@ class _Uses:
 
     @classmethod
     def of(cls, *parts: object) -> _Uses:
-        """The uses of some statements."""
         found = cls()
         for part in parts:
             found.statement(part)

@@ -30,13 +30,11 @@ def page(name: str) -> Page:
 
 @cache
 def tree(name: str) -> ET.Element:
-    """The same, parsed."""
     return parsed(page(name).text)
 
 
 @cache
 def spelling(name: str) -> Spelling:
-    """How it spells names."""
     return spelling_of(kinematics_of(named(name)))
 
 

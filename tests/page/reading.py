@@ -16,12 +16,10 @@ _COMPARED = {"≤": np.less_equal, "<": np.less, "≥": np.greater_equal, ">": n
 
 
 def tag(element: ET.Element) -> str:
-    """The tag without its namespace."""
     return element.tag.removeprefix(_XHTML)
 
 
 def has_class(element: ET.Element, name: str) -> bool:
-    """Whether an element has a class."""
     return name in element.get("class", "").split()
 
 
@@ -217,7 +215,6 @@ def residuals(shown: ET.Element, values: Values) -> Iterator[Value]:
 
 
 def difference(lines: Iterable[ET.Element], values: Values) -> Value:
-    """Left minus right of an equation on some lines."""
     tokens = _Tokens([item for math in lines for item in _flat(math)])
     left = _sum(tokens, values)
     assert tokens.take().text == "="

@@ -69,7 +69,6 @@ def _rows(text: str) -> list[list[str]]:
 
 
 def _declared(block: str) -> list[str]:
-    """The inputs of the first block of a text."""
     inputs = re.search(r"^ *VAR_INPUT\b(.*?)^ *END_VAR", block, re.MULTILINE | re.DOTALL)
     return re.findall(r"^ *(\w+) : (?:LREAL|BOOL|INT)\b", inputs[1], re.MULTILINE) if inputs else []
 
@@ -117,7 +116,6 @@ def _confirm_programs(name: str) -> None:
 
 
 def _bound(text: str, anchors: tuple[str, ...]) -> Iterator[str]:
-    """The names that programs of a page bind."""
     tree = parsed(text)
     headings = {e.get("id") for e in tree.iter()}
     for anchor in anchors:

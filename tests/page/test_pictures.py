@@ -66,7 +66,6 @@ def test_the_pose_of_a_picture_is_singular(name: str) -> None:
 
 
 def _least(name: str, margin: str) -> float:
-    """The least size of a margin at random poses."""
     robot = softkin.catalogue()[name](**{p.name: p.nominal for p in named(name).parameters})
     rows = random_axes(robot, 1000, np.random.default_rng(3))
     return min(abs(robot.singularity(row).margins[margin]) for row in rows)

@@ -45,7 +45,6 @@ def answers(twin: Twin, stand: Stand, poses: Reals, near: Reals) -> Reals:
 
 
 def ran(twin: Twin, name: str, stand: Stand) -> Stage:
-    """A program, run to its end."""
     way = segments(twin.pose(stand.joints) - twin.raised, stand.program)
     poses = np.concatenate([part.at(np.linspace(0.0, 1.0, ROWS)) for part in way]) + twin.raised
     return stage(name, answers(twin, stand, poses, np.array(stand.joints)), poses)
@@ -67,7 +66,6 @@ def line(twin: Twin, name: str, begin: Stage, to: Pose, *said: str, on: bool = T
 
 
 def jogged(twin: Twin, begin: Stage) -> Stage:
-    """Some millimetres in X by hand."""
     there = line(twin, "jog", begin, {"X": begin.poses[-1, 0] + JOG})
     return stage("jog", there.joints, there.poses, moves="world")
 

@@ -35,7 +35,6 @@ def test_without_root_it_says_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     "release", ["ID=ubuntu\nVERSION_ID=\"24.04\"\n", "ID=debian\nVERSION_ID=\"13\"\n", "NAME=another\n"]
 )  # fmt: skip
 def test_on_another_system_it_says_so(release: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The system is named."""
     file = tmp_path / "os-release"
     file.write_text(release, encoding="utf-8")
     monkeypatch.setattr(os, "geteuid", lambda: 0)

@@ -96,7 +96,6 @@ def test_another_configuration_is_found(machine: str) -> None:
 
 
 def _cut(was: Stage) -> Stage:
-    """The stage without its last line."""
     rows = slice(0, 401)
     return stage(was.name, was.joints[rows], was.poses[rows])
 
@@ -180,7 +179,6 @@ def test_lost_periods_and_a_start_that_fails_are_found() -> None:
 
 @pytest.mark.parametrize("machine", NAMED)
 def test_a_pose_is_its_frame(machine: str) -> None:
-    """The letters of a pose mean the frame that the joints have."""
     twin = Twin(NAMED[machine])
     for stand in (twin.machine.first, twin.machine.second):
         positions, rotations = frames(twin.machine, twin.pose(stand.joints)[None])

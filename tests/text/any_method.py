@@ -9,7 +9,8 @@ from typing import Any
 from tests.harness.instance import Entry
 from tests.text import values
 from tests.text.controller import OK, Controller
-from tests.text.samples import Sample
+from tests.text.coupling.blocks import OrientationPair
+from tests.text.samples import Rows, Sample
 from tests.text.serial_pairs import SerialPair
 from tests.text.settings import settings
 from tests.text.units import public_methods
@@ -94,5 +95,12 @@ def _fitting(pair: SerialPair, sample: Sample) -> dict[str, Any]:
         "aTwistRate": [6.0, 5.0, 4.0, 3.0, 2.0, 1.0],
         "aVelocities": [2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
         "as": settings(library, None),
+        **(of_an_orientation(pair, rotation) if isinstance(pair, OrientationPair) else {}),
         "udiAxis": 0,
     }
+
+
+def of_an_orientation(pair: OrientationPair, rotation: Rows) -> dict[str, Any]:
+    space = pair.controller.space(pair.image)
+    matrix = values.matrix(pair.library, rotation)
+    return {"mR": matrix, "mR_flange": matrix, "oriInfo": space, "oriInfoBase": space}

@@ -13,8 +13,6 @@ from tests.text.controller import Controller
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine with its dimensions, in Python."""
-
     label: str
     mechanism: Mechanism
     given: Mapping[str, float]
@@ -32,17 +30,14 @@ class Both:
 
     @property
     def mechanism(self) -> Mechanism:
-        """The description."""
         return self.machine.mechanism
 
     @property
     def robot(self) -> softkin.Mechanism:
-        """The machine in Python."""
         return self.machine.robot
 
     @property
     def library(self) -> Library:
-        """What the block was compiled to."""
         return self.controller.library
 
     def __str__(self) -> str:

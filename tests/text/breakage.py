@@ -37,7 +37,6 @@ def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapp
 
 
 def declared(text: str) -> str:
-    """The lines of declarations, up to the name."""
     words = ("METHOD ", "FUNCTION", "PROPERTY ")
     lines = [line for line in text.split("\n") if line.startswith(words)]
     return "\n".join(line.split(" :")[0].split(" EXTENDS ")[0].removesuffix(" IMPLEMENTS") for line in lines) + "\n"

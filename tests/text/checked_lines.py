@@ -33,7 +33,6 @@ class Robot:
     twin: softkin.Mechanism
 
     def frame(self, axes: Axes) -> tuple[Array, Array]:
-        """Position and rotation of the flange."""
         frame, _ = self.twin.forward(axes)
         return np.array(frame.position), np.array(frame.rotation)
 

@@ -23,11 +23,9 @@ def loops(request: pytest.FixtureRequest) -> tuple[Loop, ...]:
 
 @pytest.fixture(params=MECHANISMS, ids=lambda m: m.name)
 def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A serial mechanism."""
     return request.param
 
 
 @pytest.fixture
 def serial_pairs(mechanism: Mechanism) -> tuple[SerialPair, ...]:
-    """Its machines, each as a block and in Python."""
     return serial_pairs_of(mechanism)

@@ -45,7 +45,6 @@ class Controller:
         return frozenset(name.lower() for name in public_methods(self.mechanism))
 
     def set_inputs(self, given: Mapping[str, float]) -> None:
-        """Set the inputs that parameters name."""
         for parameter, name in self._inputs:
             if parameter.name in given:
                 setattr(self.block, name, input_value(parameter, given[parameter.name]))
@@ -57,7 +56,6 @@ class Controller:
         return tuple((parameter, self.names.get(parameter.name, wanted_name(parameter))) for parameter in parameters)
 
     def initialise(self, given: Mapping[str, float]) -> str:
-        """Set inputs, and call Initialize."""
         self.set_inputs(given)
         status: str = self.block.call("Initialize")
         return status
@@ -202,7 +200,6 @@ class Controller:
 
 
 def input_value(parameter: Parameter, value: float) -> bool | int | float:
-    """A parameter as a value of its input's type."""
     if parameter.role is Role.FLAG:
         return bool(value)
     return int(value) if parameter.role is Role.SIGN else float(value)

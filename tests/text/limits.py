@@ -53,7 +53,6 @@ def is_inside(machine: Machine, axes: Array) -> Array:
 
 
 def draw_inside(machine: Machine, count: int, rng: Generator) -> Array:
-    """Random axis values of regular poses inside the limits."""
     axes = machine.draw(max(2000, 100 * count), rng)
     for column, joint in zip(axes.T, machine.mechanism.joints, strict=True):
         lower, upper = (machine.robot.parameters[f"{end}_{joint.key}"] for end in ("lower", "upper"))

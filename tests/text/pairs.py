@@ -21,7 +21,6 @@ and a folder, of their own."""
 
 @cache
 def pairs_of(mechanism: Mechanism) -> tuple[Pair, ...]:
-    """Its machines."""
     if mechanism.drives:
         machines = driven_machines_of(mechanism)
         return tuple(map(serial_pair, (*machines, limited(machines[-1], "limited"))))

@@ -111,7 +111,6 @@ def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
 
 
 def tilted(rng: Generator) -> Rows:
-    """A random rotation."""
     w, x, y, z = (q := rng.normal(size=4)) / np.linalg.norm(q)
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),

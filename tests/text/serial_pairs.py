@@ -22,7 +22,6 @@ class SerialPair(Both):
 
     @cached_property
     def regular(self) -> tuple[Sample, ...]:
-        """Random samples away from singular poses."""
         return regular(self.machine)
 
     @cached_property
@@ -39,7 +38,6 @@ def serial_pairs_of(mechanism: Mechanism) -> tuple[SerialPair, ...]:
 
 
 def serial_pair(one: Machine) -> SerialPair:
-    """The pair for one machine."""
     controller = Controller(compiled(one.mechanism), one.mechanism)
     assert controller.initialise(one.robot.parameters) == OK
     return SerialPair(one, controller)

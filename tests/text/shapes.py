@@ -1,137 +1,118 @@
-"""The shape of a text for a grammar: names and numbers do not matter, and a shape is parsed once."""
+"""The shapes of a text for a grammar: it is taken apart phrase by phrase, each shape stands once, `n` for a name.
+
+To a context-free grammar an operand, an argument, a statement is the same wherever it stands: one that is known gives
+way to a name, or to an empty statement. What is wrong is no phrase, gives way to nothing, and is left for the grammar.
+"""
 
 import re
-from dataclasses import dataclass, field
+from functools import cache
 
-from tests.text.phrases import Keys, shortened
+_TOKENS = re.compile(r"'[^'\n]*'|\d[\d.]*(?:E-?\d+)?|[A-Za-z_]\w*|:=|=>|<=|>=|<>|\S")
+_WORDS = r"(?!(?:IF|THEN|ELSIF|ELSE|END_\w+|FOR|TO|BY|DO|CASE|OF|RETURN|EXIT|NOT|AND|OR|XOR|MOD)\b)"
+_BEHIND, _WHOLE = r"(?! :=)", r"(?! [(\[.^]| :=)"
+"""Nothing is assigned to the operand; it has no field, index or arguments, either."""
+_ARGUMENT = r"(?:n (?::=|=>) )?n"
+_CALL = rf"(?<!\S){_WORDS}\w+ \( (?:{_ARGUMENT}(?: , {_ARGUMENT})* )?\)"
+_OPERATORS = (r"\*|/|MOD", r"\+|-", "<|<=|>|>=", "=|<>", "AND", "XOR", "OR")
+_EXPRESSIONS = tuple(map(re.compile, (
+    rf"(?<!\S)(?:''|0[0.]*(?:E-?0)?)(?!\S| :(?!\S)){_BEHIND}",
+    rf"(?<!\S){_WORDS}[A-Z_][A-Z_\d]+(?!\S| \(){_BEHIND}",
+    r"\bn \. n\b",
+    r"\bn \^",
+    r"\bn \[ n(?: , n)* \]",
+    rf"{_CALL}{_BEHIND}",
+    rf"(?<!\bn )\( n \){_BEHIND}",
+    rf"(?<!n )(?<![)\]] )- n\b{_WHOLE}",
+    rf"\bNOT n\b{_WHOLE}",
+    *(rf"(?<!^)(?<! : )\bn (?:{operators}) n\b{_WHOLE}" for operators in _OPERATORS),
+)))  # fmt: skip
+_STATEMENTS = tuple(map(re.compile, (
+    r"(?<!\S)(?:n := n|RETURN|EXIT) ;",
+    r"(?<!\S)IF n THEN ; (?:ELSIF n THEN ; )?(?:ELSE ; )?END_IF(?: ;)?",
+    r"(?<!\S)FOR n := n TO n (?:BY n )?DO ; END_FOR(?: ;)?",
+    r"(?<!\S)CASE n OF (?:\w+ : ; )+(?:ELSE ; )?END_CASE(?: ;)?",
+)))  # fmt: skip
+_CALLED = re.compile(rf"(?:^|(?<= : )){_CALL} ;")
+_BETWEEN = re.compile(
+    r"(?<= ;) |(?<=\bTHEN) |(?<=\bELSE) |(?<=\bDO) |(?<=\bOF) |(?:(?<=\bEND_IF)|(?<=\bEND_FOR)|(?<=\bEND_CASE)) (?!;)"
+)
+_REPEATED = re.compile(r"(?<!\S)(; |ELSIF n THEN ; |0 : ; )\1+")
+_ALIKE = re.compile(r"((?:- )?[\w.]+(?: :=| =>)?(?: n)?)(?: , \1){3,}")
+"""Arguments, variables or values of one kind: three stand for all."""
+_VALUES = re.compile(r"(?<=:= \[ )[^\[\]]*(?= \])")
+_SECTION = re.compile(r"^[ ]*(VAR(?:_[A-Z_]+)?(?: CONSTANT)?)\b(.*?)^[ ]*END_VAR", re.MULTILINE | re.DOTALL)
+_FRAME = re.compile(r"METHOD|FUNCTION|PROGRAM|PROPERTY|GET|END_(?!IF|FOR|CASE)|\{|TRAFO\.")
 
-_WORDS = re.compile(r"//[^\n]*|'[^'\n]*'|\b\d[\d.]*(?:E-?\d+)?\b|\b[A-Za-z_]\w*\b")
-_ALONE = re.compile(r"VAR|STRUCT|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
-"""How lines begin that are no part of a statement."""
-_ENDS = (";", "THEN", "ELSE", "DO", "OF", ":")
-_VARIABLE = re.compile(r"\w+ : [^;]*;")
-_VALUES = re.compile(r":= \[ ?([^\[\]]*?) ?\];")
-_LABEL = re.compile(r"(\d+): (.*;)")
-"""A statement of a CASE: without it, there must be another."""
-_CONDITION = re.compile(r"(IF|ELSIF) .*THEN")
-_OPENED, _CLOSED = ("IF ", "FOR ", "CASE ", "WHILE "), ("END_IF", "END_FOR", "END_CASE", "END_WHILE")
-_LONGEST_GROUP = 8
-"""Lines in a group that may repeat: a condition with its refusal, a choice between two assignments."""
+
+def shapes(text: str) -> tuple[str, set[str]]:
+    """A method, a property, a function or a block without what gives way; and that, as methods."""
+    known, frame, body = set[str](), list[str](), list[str]()
+    code = re.sub(r"//[^\n]*|\(\*.*?\*\)", "", text, flags=re.DOTALL)
+    for section, variables in _SECTION.findall(code):
+        for variable in filter(None, map(_same, variables.split(";"))):
+            known.add(method(f"{section}\n{_VALUES.sub(_different, _few(variable))} ;\nEND_VAR"))
+    for line in [*filter(None, map(str.strip, _SECTION.sub(r"\1\nEND_VAR", code).split("\n"))), "END_"]:
+        if line.startswith("VAR") or _FRAME.match(line):
+            left, statements = _statements(_same(" ".join(body)))
+            known |= {method(statement) for statement in statements}
+            frame, body = [*frame, left, _same(line)], []
+        else:
+            body.append(line)
+    return "\n".join(filter(None, frame[:-1])).replace(" . ", "."), known
 
 
-@dataclass
-class Seen:
-    """What a grammar has read: shapes of lines and of statements with a body, and phrases."""
-
-    shapes: set[str] = field(default_factory=set)
-    phrases: Keys = field(default_factory=set)
-
-
-def shape(text: str) -> str:
-    """The text with every name, number, string and comment made the same; keywords and types stay."""
-    return _WORDS.sub(lambda match: _same(match[0]), text)
+def method(code: str) -> str:
+    return f"METHOD n : BOOL\n{code}\nEND_METHOD".replace(" . ", ".")
 
 
 def names(text: str) -> set[str]:
-    """Every name in a text."""
-    return {match[0] for match in _WORDS.finditer(text) if _same(match[0]) == "n"}
+    code = re.sub(r"//[^\n]*|'[^'\n]*'", "", text)
+    return {word for word in re.findall(r"\b[A-Za-z_]\w*", code) if _same(word) == "n"}
 
 
-def abridged(text: str, seen: Seen) -> str:
-    """The text without what has a shape that is in `seen`, and the new shapes are then in it.
-
-    Phrases of a statement that are known are shortened. Variables are left out, an empty statement stands for a
-    statement, or for one with a body (IF, FOR, CASE) that is known, a name for a condition. Lines, or groups of
-    lines, that repeat the shape of those before them are left out too, and comments, and in a list of values those of
-    the shape of two others.
-    """
-    found: list[str] = []
-    for statement in _statements(text):
-        line = _VALUES.sub(_few, statement)
-        if not (_ALONE.match(line) or _VARIABLE.fullmatch(line)):
-            label = _LABEL.fullmatch(line)
-            line = f"{label[1]}: {shortened(label[2], seen.phrases)}" if label else shortened(line, seen.phrases)
-        is_old = shape(line) in seen.shapes
-        if not is_old or _ALONE.match(line):
-            found.append(line)
-        elif condition := _CONDITION.fullmatch(line):
-            found.append(f"{condition[1]} n THEN")
-        elif label := _LABEL.fullmatch(line):
-            found.append(f"{label[1]}: ;")
-        elif not _VARIABLE.fullmatch(line):
-            found.append(";" if line.endswith(";") else line)
-        seen.shapes.add(shape(line))
-        _fold(found, seen)
-    return _condensed(found)
+def _same(text: str) -> str:
+    """The text with every name, number and string made the same, and blanks around them; keywords and types stay."""
+    same = (
+        "''" if token[0] == "'" else re.sub(r"\d+", "0", token) if token[0].isdigit() else
+        "n" if re.match(r"[A-Za-z_]", token) and not (token.isupper() and len(token) > 1) else token
+        for token in _TOKENS.findall(text)
+    )  # fmt: skip
+    return " ".join(same)
 
 
-def _fold(lines: list[str], seen: Seen) -> None:
-    """Where the last line ends a statement with a body whose shape is known, an empty statement instead."""
-    if not lines or lines[-1] not in _CLOSED:
-        return
-    depth, place = 1, len(lines) - 1
-    while depth and place:
-        place -= 1
-        depth += (lines[place] in _CLOSED) - lines[place].startswith(_OPENED)
-    if depth:
-        return
-    whole = _condensed(lines[place:])
-    lines[place:] = [";"] if shape(whole) in seen.shapes else whole.split("\n")
-    seen.shapes.add(shape(whole))
+def _few(text: str) -> str:
+    return _ALIKE.sub(r"\1 , \1 , \1", text)
 
 
-def _statements(text: str) -> list[str]:
-    """The text with every statement, variable and condition on a line of its own."""
-    found: list[str] = []
-    begun = ""
-    for code in filter(None, (line.split("//")[0].strip() for line in text.split("\n"))):
-        if _ALONE.match(code):
-            found += [begun, code]
-            begun = ""
-            continue
-        begun = f"{begun} {code}".strip()
-        if begun.endswith(_ENDS):
-            found.append(begun)
-            begun = ""
-    return list(filter(None, [*found, begun]))
+def _different(values: re.Match[str]) -> str:
+    return " , ".join(dict.fromkeys(values[0].split(" , ")))
 
 
-def _few(values: re.Match[str]) -> str:
-    kept: list[str] = []
-    for value in values[1].split(", "):
-        if sum(shape(value) == shape(other) for other in kept) < 2:
-            kept.append(value)
-    return f":= [{', '.join(kept)}];"
+def _statements(text: str) -> tuple[str, set[str]]:
+    """What is left of statements, an empty one where all is right; and the shapes of the others."""
+    parts = [_expressions(part) for part in _BETWEEN.split(text)]
+    left, before = "".join(f"{part} " for part, _ in parts), ""
+    known = set[str]().union(*(found for _, found in parts))
+    while left != before:
+        before = left
+        for pattern in _STATEMENTS:
+            known.update(pattern.findall(left))
+            left = _REPEATED.sub(r"\1", pattern.sub(";", left))
+    return left.strip(), known
 
 
-def _condensed(given: list[str]) -> str:
-    lines: list[str] = []
-    shapes: list[str] = []
-    for line in given:
-        lines.append(line)
-        shapes.append(shape(line))
-        for size in range(1, _LONGEST_GROUP + 1):
-            if shapes[-size:] == shapes[-2 * size : -size] and _is_balanced(shapes[-size:]):
-                del lines[-size:], shapes[-size:]
+@cache
+def _expressions(statement: str) -> tuple[str, frozenset[str]]:
+    """A statement with names for its expressions; and these, each as an assignment."""
+    known, count = set[str](), 1
+    while count:
+        statement, count = _few(statement), 0
+        if call := _CALLED.search(statement):
+            known.add(call[0])
+            statement = _CALLED.sub(";", statement)
+        for pattern in _EXPRESSIONS:
+            known.update(f"n := {phrase} ;" for phrase in pattern.findall(statement))
+            statement, count = pattern.subn("n", statement)
+            if count:
                 break
-    return "\n".join(lines)
-
-
-def _is_balanced(group: list[str]) -> bool:
-    """Whether as many blocks begin as end in some lines, and no ELSE is of a block outside."""
-    depth = 0
-    for line in group:
-        depth += line.startswith((*_OPENED, "VAR")) - line.startswith("END_")
-        if depth < 0 or (line == "ELSE" and depth == 0):
-            return False
-    return depth == 0
-
-
-def _same(word: str) -> str:
-    if word.startswith("//"):
-        return "//"
-    if word.startswith("'"):
-        return "''"
-    if word[0].isdigit():
-        return "0"
-    return word if word.isupper() and len(word) > 1 else "n"
+    return statement, frozenset(known)

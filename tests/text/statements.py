@@ -38,7 +38,6 @@ class Statements:
             yield
 
     def left_out(self) -> list[Place]:
-        """Where the statements stand that did not run."""
         ran: set[int] = set()
         for lines, flags in zip(self._lines, self._ran, strict=True):
             ran.update(compress(lines, flags[1:]))

@@ -34,7 +34,6 @@ def at(mechanism: Mechanism, joint: Joint, value: float, **given: float) -> tupl
 
 
 def block_of(mechanism: Mechanism) -> Controller:
-    """A block of the mechanism."""
     return Controller(compiled(mechanism), mechanism)
 
 
@@ -54,7 +53,6 @@ def moved(block: Controller, robot: softkin.Mechanism, axes: Sequence[float], re
 
 
 def opened(robot: softkin.Mechanism, configuration: Sequence[int]) -> tuple[int, ...]:
-    """The configuration with every turn open."""
     turns = len(configuration) - robot.BRANCHES
     return (*configuration[: robot.BRANCHES], *(0,) * turns)
 
@@ -248,7 +246,6 @@ def test_every_axis_is_tested_against_both(mechanism: Mechanism) -> None:
 
 @EVERY
 def test_the_turn_is_chosen_where_limits_are_not_tested(mechanism: Mechanism) -> None:
-    """xCheckLimits := FALSE stops the test and nothing else."""
     for joint in mechanism.period_joints:
         index = mechanism.joints.index(joint)
         robot, axes = at(mechanism, joint, -160.0, check_limits=False)

@@ -19,7 +19,6 @@ NO_PERIODS = (128, -128, 300, 32767, -32768)
 
 @pytest.fixture(params=CONFIGURABLE, ids=lambda m: m.name)
 def one(request: pytest.FixtureRequest) -> Pair:
-    """A machine that has configurations."""
     return pairs_of(request.param)[1]
 
 
@@ -31,7 +30,6 @@ def test_who_has_them(pairs: tuple[Pair, ...]) -> None:
 
 
 def words(name: str) -> str:
-    """`elbow` → `Elbow`."""
     return "".join(word[:1].upper() + word[1:] for word in name.split("_"))
 
 
@@ -61,7 +59,6 @@ def configured(one: Pair, given: dict[str, Any]) -> tuple[int, ...]:
 
 
 def test_what_is_set_is_read(one: Pair) -> None:
-    """The reading block gives back what the setting block wrote, for every choice and turn."""
     counts = one.robot.BRANCHES, len(one.robot.PERIOD_AXES)
     for branches in product((0, 1, 2), repeat=counts[0]):
         for turn in PERIODS:
@@ -74,12 +71,10 @@ def test_what_is_set_is_read(one: Pair) -> None:
 
 
 def test_without_inputs_it_is_the_default(one: Pair) -> None:
-    """A setting block without inputs writes the default configuration."""
     assert configured(one, {}) == padded(one.robot.DEFAULT_CONFIGURATION)
 
 
 def test_a_turn_that_a_byte_cannot_hold_is_automatic(one: Pair) -> None:
-    """A turn beyond a signed byte is written as automatic."""
     size = len(one.robot.PERIOD_AXES)
     for turn in NO_PERIODS:
         given = inputs(one.mechanism, (1,) * one.robot.BRANCHES, (turn,) * size)

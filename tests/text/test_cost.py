@@ -221,7 +221,6 @@ PRIMITIVES = {
 
 @pytest.mark.parametrize("name", PRIMITIVES)
 def test_primitives(name: str) -> None:
-    """At worst exactly what the function does."""
     expression, given = PRIMITIVES[name]
     function = counting_units().function(name)
     choices = product(*given.values())
@@ -247,12 +246,10 @@ def test_primitives(name: str) -> None:
     ],
 )
 def test_expressions(expression: sp.Basic, expected: Cost) -> None:
-    """The operations of an expression are counted as expected."""
     assert expression_cost(expression) == expected
 
 
 def test_statements() -> None:
-    """A loop counts as often as it may run, a call as what it calls, with its outputs."""
     total, half = real("total"), real("half")
     shared = Program("shared", (X,), (Let(half, X / 2),), (Output("half", half + 1),))
     body = (

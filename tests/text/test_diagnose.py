@@ -19,7 +19,6 @@ NAN = float("nan")
 
 
 def frame(axes: tuple[float, ...]) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    """The position at axis values, and their configuration."""
     (position, _), configuration = ROBOT.forward(axes)
     return position, configuration
 
@@ -52,7 +51,6 @@ def test_the_axis_beyond_its_limit_and_how_far(axes: tuple[float, ...], reason: 
 
 
 def test_nothing_to_say() -> None:
-    """Diagnose answers an empty text for a pose that is solved."""
     assert both(*frame((5.0, 30.0, 50.0))) == (Status.OK, "", 0.0, 0, 0.0)
 
 
@@ -65,12 +63,10 @@ def test_out_of_reach_by_a_length(distance: float, missing: float) -> None:
 
 
 def test_what_is_no_number() -> None:
-    """Diagnose says which input is no number."""
     assert both((1.0, NAN, 0.0), (1, 0, 0)) == (Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0, 0, 0.0)
 
 
 def test_a_byte_without_a_meaning() -> None:
-    """Diagnose names the configuration byte that means nothing."""
     assert both((400.0, 0.0, 50.0), (7, 0, 0)) == (
         Status.BAD_INPUT,
         "byte 0 of the configuration means nothing",
@@ -80,14 +76,7 @@ def test_a_byte_without_a_meaning() -> None:
     )
 
 
-def test_before_initialize() -> None:
-    """Diagnose says that the block is not initialised."""
-    controller = Controller(compiled(SCARA), SCARA)
-    assert controller.diagnose((400.0, 0.0, 50.0), NO_TURN, (1, 0, 0), REFERENCE) == ("not initialized", 0.0)
-
-
 def test_it_changes_nothing() -> None:
-    """The same answer again, and the inverse answers as before."""
     robot = Scara2Z(**GIVEN)
     position, configuration = frame((5.0, 30.0, 50.0))
     before = robot.inverse((position, NO_TURN), configuration, REFERENCE)

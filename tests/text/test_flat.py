@@ -42,7 +42,6 @@ def objects_in(text: str) -> tuple[Object, ...]:
 
 @cache
 def base() -> Object:
-    """The base block."""
     (found,) = objects_in(shared_texts()[f"{BASE}.st"])
     return found
 
@@ -54,7 +53,6 @@ def flat_text(mechanism: Mechanism) -> str:
 
 
 def flat_of(text: str) -> str:
-    """The text of a unit, flat."""
     return as_text(flattened(objects_in(text), base()))
 
 
@@ -66,7 +64,6 @@ def flat_texts(mechanism: Mechanism) -> Mapping[str, str]:
 
 @cache
 def flat_library(mechanism: Mechanism) -> Library:
-    """The unit, ready to run."""
     return compile_st(flat_texts(mechanism))
 
 
@@ -180,7 +177,6 @@ def test_the_second_grammar_reads_a_flat_block() -> None:
 
 
 def test_the_profile_writes_these_texts() -> None:
-    """What the language writes for the profile is what is tested here, and nothing of a base is left in any file."""
     files = rendered("flat")
     assert set(rendered(None)) - set(files) == {f"softkin/{BASE}.st"}
     assert files[BLOCK].endswith(f"\n{flat_of(rendered(None)[BLOCK])}")

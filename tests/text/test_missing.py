@@ -36,7 +36,6 @@ ARMS = {
 
 
 def nominal(mechanism: Mechanism, **changes: float) -> softkin.Mechanism:
-    """The machine with its nominal dimensions."""
     return softkin.catalogue()[mechanism.name](**{p.name: p.nominal for p in mechanism.parameters} | changes)
 
 
@@ -56,7 +55,6 @@ def said(robot: softkin.Mechanism, position: tuple[float, ...], rotation: object
 @pytest.mark.long
 @pytest.mark.parametrize("mechanism", LEGS, ids=lambda m: m.name)
 def test_a_rod_would_have_to_be_so_much_longer_or_shorter(mechanism: Mechanism) -> None:
-    """A rod with a length changed by the missing amount reaches the pose."""
     robot = nominal(mechanism)
     rng = np.random.default_rng(3)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u")

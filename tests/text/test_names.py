@@ -29,7 +29,6 @@ REMEDY = "choose another name for the mechanism, parameter, joint or branch that
 
 
 def block(name: str, variable: str = "x") -> tuple[Object, ...]:
-    """A block of that name, with one input."""
     return objects_of(
         f"FUNCTION_BLOCK {name}\nVAR_INPUT\n  {variable} : LREAL := 0.0;  // One\nEND_VAR\nEND_FUNCTION_BLOCK\n"
     )
@@ -64,12 +63,10 @@ def test_one_list_is_for_both() -> None:
 
 
 def test_a_parameter_of_a_private_method_is_spelled_around_them() -> None:
-    """A parameter of a private method with a reserved name gets another spelling."""
     assert [parameter_name(n) for n in ("single", "r", "lowest_a1")] == ["singleValue", "rValue", "lowestA1"]
 
 
 def test_temporaries_are_spelled_around_them() -> None:
-    """A temporary variable with a reserved name gets another spelling."""
     assert spellings(("nan", "step", "heading"), ()) == {"nan": "nanValue", "step": "stepValue", "heading": "heading"}
     assert {"nan", "step", "to", "dint"} <= reserved()
 
@@ -86,7 +83,6 @@ def test_temporaries_are_spelled_around_them() -> None:
     ],
 )
 def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> None:
-    """A name with another meaning is refused with one sentence."""
     shared = objects_of("FUNCTION Softkin_Root : LREAL\nVAR\n  y : LREAL;\nEND_VAR\n\ny := 1.0;\nEND_FUNCTION\n")
     with pytest.raises(DescriptionError, match=re.escape(message)) as refusal:
         refuse_clashes({"a/b.st": objects, "softkin/Softkin_Root.st": shared})
@@ -94,7 +90,6 @@ def test_a_clash_is_one_sentence(objects: tuple[Object, ...], message: str) -> N
 
 
 def test_a_name_in_a_method_is_seen_too() -> None:
-    """A reserved name among the variables of a method is refused, too."""
     head = "FUNCTION_BLOCK Mine\nVAR\n  x : LREAL;\nEND_VAR\n\n"
     text = head + "METHOD PUBLIC Run\nVAR\n  nan : LREAL;\nEND_VAR\n\nnan := x;\n"
     with pytest.raises(DescriptionError, match=r"Mine\.Run declares nan, which is a macro"):
@@ -102,7 +97,6 @@ def test_a_name_in_a_method_is_seen_too() -> None:
 
 
 def test_two_objects_of_one_name() -> None:
-    """Two objects whose names differ in case alone are refused."""
     with pytest.raises(DescriptionError, match=r"b\.st: the name MINE is taken by a\.st"):
         refuse_clashes({"a.st": block("Mine"), "b.st": block("MINE")})
 
@@ -184,7 +178,6 @@ def test_the_list_is_the_contract() -> None:
 
 
 def test_every_constant_is_used() -> None:
-    """No constant of the list is there for nothing."""
     text = "\n".join(text for file, text in FILES.items() if file != LIST)
     assert set(re.findall(r"Softkin_Names\.(\w+)", text)) == set(CONSTANTS)
 
@@ -224,7 +217,6 @@ ARMS = {"dArmLength1": 300.0, "dArmLength2": 250.0}
 
 @pytest.mark.parametrize(("name", "x"), [("Unreachable", 1000.0), ("BadInput", float("nan"))])
 def test_an_error_is_the_one_of_the_list(name: str, x: float) -> None:
-    """Beyond its reach and for no number a block answers what the list names."""
     assert inverse(*ready(name, STRANGE, SCARA_TEXT, **ARMS), x) == STRANGE
 
 
@@ -247,7 +239,6 @@ def test_a_type_of_axis_is_the_one_of_the_list(name: str, axis: int) -> None:
 
 
 def test_a_freedom_is_the_one_of_the_list() -> None:
-    """The freedom of a flange that turns is what the list names."""
     found, block = ready("TurningOrientation", "three", SCARA_TEXT, **ARMS)
     image = found.new(values.IMAGE_TYPE)
     block.call("GetOrientationImage", oriInfo=image)

@@ -141,7 +141,6 @@ def test_its_text_is_portable(name: str) -> None:
 
 
 def test_its_interface_is_that_of_its_axes() -> None:
-    """Three axes at most and no commanded turn: the small one."""
     small = {"Kin_Pos_RRR", "Kin_Delta_P3C_Type3", "Kin_Gantry3", "Kin_P2X_Type1"}
     large = {"Kin_Scara3_Z", "Kin_ArticulatedRobot_6DOF", "Kin_CAxis"}
     assert {name: Robot(name).is_small for name in (*small, *large)} == {

@@ -154,18 +154,15 @@ def lint(text: str) -> list[Violation]:
 
 @pytest.mark.parametrize("file", FILES)
 def test_every_object_is_portable(file: str) -> None:
-    """Every object uses the portable subset of the language alone."""
     assert lint(FILES[file]) == []
 
 
 @pytest.mark.parametrize("file", _EVERY)
 def test_no_line_is_longer_than_a_page_is_wide(file: str) -> None:
-    """No line of Structured Text is longer than 110 columns."""
     assert [line for line in _EVERY[file].split("\n") if len(line) > 110] == []
 
 
 def test_the_lint_knows_enough() -> None:
-    """The check of portability knows the enumerators and types of the libraries."""
     assert {"Unknown", "Rotary", "zero", "SMC_NO_ERROR"} <= set(enumerators())
     assert {"trafo", "axispos_ref", "smc_frame", "softkin_root", "ismkinperiodhandling"} <= library_names()
 
@@ -223,7 +220,6 @@ PLANTED = {
 
 @pytest.mark.parametrize("case", PLANTED)
 def test_the_lint_sees(case: str) -> None:
-    """The check of portability finds each planted violation."""
     old, new, why = PLANTED[case]
     assert old in _BODY and lint(_BODY) == []
     found = lint(_BODY.replace(old, new, 1))

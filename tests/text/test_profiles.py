@@ -68,7 +68,6 @@ def base(profile: str | None) -> ast.Block:
 
 
 def test_an_older_library_gets_the_predecessors() -> None:
-    """For an older library a block implements the predecessors of newer interfaces."""
     current, older = block(None), block("before_4_11")
     assert {f"TRAFO.{name}" for name in LEFT_OUT} <= set(current.implements)
     assert [name for name in older.implements if name.removeprefix("TRAFO.") in LEFT_OUT] == []
@@ -81,7 +80,6 @@ def test_an_older_library_gets_the_predecessors() -> None:
 
 
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:
-    """For an older library the methods of newer interfaces are missing."""
     upside_down = build(load(MECHANISMS / "kin_scara4_cczc_zccoupled.py"))
     current, older = ({m.name for m in _block_in(files_of(p, upside_down)).methods} for p in (None, "before_4_11"))
     assert current - older == {"FindProjection"}
@@ -129,7 +127,6 @@ def test_what_is_left_is_executed(name: str) -> None:
 
 
 def test_plcopen_follows_the_profile() -> None:
-    """The PLCopenXML file for an older library names no newer interface."""
     text = rendered("before_4_11")["softkin.xml"]
     assert "ISMKinematicWithConfigurations3" in text
     assert not any(name in text for name in LEFT_OUT)
@@ -185,7 +182,6 @@ def test_what_is_not_documented_says_so() -> None:
 def test_an_unknown_profile_is_refused_at_once(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """An unknown profile is refused with one message, before anything is derived."""
     arguments = [command, "--output", str(tmp_path / "out"), "--profile", "4.99"]
     assert main(arguments) == 1
     printed = capsys.readouterr()
@@ -209,7 +205,6 @@ def test_a_profile_is_generated_and_checked(tmp_path: Path, capsys: pytest.Captu
 @pytest.mark.parametrize(("given", "wanted"), [("PROFILE=before_4_11", " --profile before_4_11"), ("PROFILE=", "")])
 @pytest.mark.parametrize("target", ["generate", "check"])
 def test_make_hands_the_profile_on(target: str, given: str, wanted: str) -> None:
-    """The Makefile passes the profile to the compiler."""
     command = ["make", "--dry-run", target, given, "FRESH="]
     done = subprocess.run(command, cwd=MECHANISMS.parents[1], capture_output=True, text=True, check=True)
     assert re.search(rf"-m derive {target}{wanted} *\n", done.stdout)

@@ -40,7 +40,6 @@ def reference(function: type[sp.Function], *arguments: float) -> float:
 @example(-5e-324, -1.0)
 @example(HUGE, 5e-324)
 def test_atan2(y: float, x: float) -> None:
-    """The arc tangent is that of the reference interpreter, in (-pi, pi]."""
     found = LIBRARY.function("Softkin_Atan2")(y, x)
     assert found == pytest.approx(reference(Atan2, y, x), rel=ROUNDING, abs=5e-324)
     assert -math.pi <= found <= math.pi
@@ -48,7 +47,6 @@ def test_atan2(y: float, x: float) -> None:
 
 @given(value=SIZES)
 def test_root(value: float) -> None:
-    """The root is bit for bit that of the reference interpreter."""
     assert LIBRARY.function("Softkin_Root")(value) == reference(Root, value)
 
 
@@ -65,13 +63,11 @@ def test_nearest_period_of_what_has_no_turn() -> None:
 @example(180.0 - 1.1e-9, 0.0)
 @example(540.0, 360.0)
 def test_nearest_period(value: float, centre: float) -> None:
-    """The nearest period is bit for bit that of the reference interpreter."""
     assert LIBRARY.function("Softkin_NearestPeriod")(value, centre) == reference(NearestPeriod, value, centre)
 
 
 @given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
-    """The nearest angle on an arc is that of the reference interpreter."""
     expected = reference(NearestOnArc, angle, centre, half)
     assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(
         expected, rel=1e-14, abs=1e-14
@@ -84,7 +80,6 @@ def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
 @example(2e9)
 @example(-2e9)
 def test_floor(value: float) -> None:
-    """The floor of a number up to 2e9 is exact."""
     if abs(value) <= 2e9:
         assert LIBRARY.function("Softkin_Floor")(value) == math.floor(value)
 
@@ -92,7 +87,6 @@ def test_floor(value: float) -> None:
 @given(value=st.floats(2.1e9, HUGE) | st.floats(-HUGE, -2.1e9))
 @example(math.nextafter(2e9, math.inf))
 def test_floor_leaves_what_no_integer_holds(value: float) -> None:
-    """The floor of a larger number is the number itself."""
     assert LIBRARY.function("Softkin_Floor")(value) == value
 
 
@@ -105,7 +99,6 @@ def test_floor_leaves_what_no_integer_holds(value: float) -> None:
 @example(-180.0 - 360.0 * 127)
 @example(-180.0 - 360.0 * 127 - 1e-3)
 def test_period_number(axis: float) -> None:
-    """The period number is the number of the turn, or 0 beyond a byte."""
     turn = math.floor((axis + (180.0 + 1e-9)) / 360.0)
     number = turn + 1 if turn >= 0 else turn
     assert LIBRARY.function("Softkin_PeriodNumber")(axis) == (number if abs(number) <= 127 else 0)

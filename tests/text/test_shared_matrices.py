@@ -36,9 +36,8 @@ def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
     return determinant, np.array(flat[1]).reshape(rows, wide)[:size, :columns]
 
 
-@pytest.mark.parametrize("size", [*range(1, 7), 8, 12, 16, 18])
+@pytest.mark.parametrize("size", [6, 8, 12, 16, 18])
 def test_solve(size: int) -> None:
-    """The solution and the determinant of a linear system are those of NumPy."""
     rng = np.random.default_rng(size)
     for columns in (0, 1, 6):
         for _ in range(20):
@@ -48,22 +47,14 @@ def test_solve(size: int) -> None:
             np.testing.assert_allclose(matrix @ solution, right, atol=1e-8)
 
 
-def test_solve_where_the_first_pivot_is_zero() -> None:
-    determinant, solution = solved(np.array([[0.0, 2.0], [4.0, 1.0]]), np.array([[2.0], [9.0]]))
-    assert determinant == -8.0
-    assert solution.tolist() == [[2.0], [1.0]]
-
-
 @pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3)), np.ones((8, 8))])
 def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
-    """A singular system has the determinant 0 and a solution of zeros."""
     determinant, solution = solved(matrix, np.ones((len(matrix), 2)))
     assert determinant == 0.0
     assert not solution.any()
 
 
 def test_solve_what_is_no_number() -> None:
-    """A system with NaN, an infinite or a huge number has the determinant 0 and a solution of zeros."""
     for wrong, k, size in product((math.nan, math.inf, -math.inf, 1e31), range(2), (2, 8)):
         tables = np.eye(size) + 0.25, np.ones((size, 1))
         tables[k][1, 0] = wrong
@@ -75,7 +66,7 @@ def test_solve_what_is_no_number() -> None:
 def test_make_rotation() -> None:
     """Turned frames are one and stay as they are; what is one to a few digits is made one, and then stays as it is."""
     make = LIBRARY.function("Softkin_MakeRotation")
-    for turned in rotations(20):
+    for turned in orthonormal.random_rotations(20, 3):
         exact = turned.ravel().tolist()
         assert make(exact) and exact == turned.ravel().tolist()
         for off in (turned * (1.0 + 2e-13), turned @ np.array([[1.0, 3e-13, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])):
@@ -94,7 +85,7 @@ def test_make_rotation_refuses_what_is_none() -> None:
     Python.
     """
     make, reason = (LIBRARY.function(f"Softkin_{name}") for name in ("MakeRotation", "RotationReason"))
-    for turned in rotations(5):
+    for turned in orthonormal.random_rotations(5, 3):
         wrong = [*orthonormal.too_far_off(turned), *orthonormal.mirrored(turned), 0.0 * turned, 1e9 * turned]
         for k in range(9):
             for number in NO_NUMBERS:
@@ -112,8 +103,8 @@ def test_make_rotation_refuses_what_is_none() -> None:
 def test_relative_rotation() -> None:
     """What the base sees; untouched where one of the two is no rotation."""
     relative = LIBRARY.function("Softkin_RelativeRotation")
-    turned = rotations(20)
-    for base, rotation in zip(turned, reversed(turned), strict=True):
+    turned = orthonormal.random_rotations(20, 3)
+    for base, rotation in zip(turned, turned[::-1], strict=True):
         found = [7.0] * 9
         assert relative(found, base.ravel().tolist(), rotation.ravel().tolist())
         np.testing.assert_allclose(np.reshape(found, (3, 3)), base.T @ rotation, atol=1e-15)
@@ -121,12 +112,6 @@ def test_relative_rotation() -> None:
             found = [7.0] * 9
             assert not relative(found, one.ravel().tolist(), other.ravel().tolist())
             assert found == [7.0] * 9
-
-
-def rotations(count: int) -> list[np.ndarray]:
-    """Random rotations."""
-    rng = np.random.default_rng(3)
-    return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
 
 
 NUMBERS = [float(n) for n in range(1, 10)]
@@ -143,7 +128,6 @@ def library(order: str, matrix_size: int) -> Library:
 
 
 def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
-    """A rotation matrix of the controller."""
     value = made.new("SM3M.SMC_Matrix3")
     made.set_rotation(value, rows)
     return value
@@ -151,7 +135,6 @@ def matrix(made: Library, rows: tuple[tuple[float, ...], ...]) -> Any:
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_order_is_found(order: str) -> None:
-    """The storage order of the matrix is found, by rows and by columns."""
     assert library(order, 72).function("Softkin_FindMatrixOrder")() == ORDERS[order]
 
 
@@ -162,7 +145,6 @@ def test_no_order_where_the_size_differs(size: int) -> None:
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_read_and_write(order: str) -> None:
-    """Reading a matrix and writing it give back the rotation, in both storage orders."""
     made = library(order, 72)
     found = [0.0] * 9
     assert made.function("Softkin_ReadMatrix")(m=matrix(made, ROWS), aElements=found, eOrder=ORDERS[order]) is True
@@ -174,7 +156,6 @@ def test_read_and_write(order: str) -> None:
 
 @pytest.mark.parametrize(("size", "order"), [(72, "Unknown"), (36, "Rows"), (80, "Rows"), (80, "Columns")])
 def test_nothing_is_touched_where_the_matrix_is_not_known(size: int, order: str) -> None:
-    """With an unknown order reading and writing return FALSE and change nothing."""
     made = library("rows", size)
     found, value = UNTOUCHED[:], matrix(made, ROWS)
     assert made.function("Softkin_ReadMatrix")(m=value, aElements=found, eOrder=order) is False
@@ -204,7 +185,6 @@ def misbehaving(name: str) -> Library:
 
 @pytest.mark.parametrize("name", BROKEN)
 def test_no_order_where_the_library_behaves_otherwise(name: str) -> None:
-    """A library whose functions behave differently has an unknown order."""
     assert misbehaving(name).function("Softkin_FindMatrixOrder")() == "Unknown"
 
 
@@ -243,7 +223,6 @@ def by_columns(pair: Pair) -> Controller:
 @pytest.mark.broad
 @pytest.mark.long("Hexapod", "Scara4")
 def test_every_method_answers_the_same_by_columns(pairs: tuple[Pair, ...]) -> None:
-    """Every method gives the same answers for matrices that are stored by columns."""
     compared = [pair for pair in pairs if pair.machine.label in MACHINES]
     assert len(compared) == 3
     for pair in compared:

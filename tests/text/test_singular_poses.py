@@ -37,7 +37,6 @@ EVERY = 5
 @pytest.mark.slow
 @pytest.mark.parametrize("label", MACHINES)
 def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
-    """At multiples of a quarter turn every method answers as in Python."""
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     assert len(one.grid) >= 9
     for sample in one.grid if label == "equal" else one.grid[::3]:
@@ -49,7 +48,6 @@ def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None
 @pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
 def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
-    """Next to multiples of a quarter turn every method answers as in Python."""
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in near(one.grid[::EVERY]):
         for method in offered(one, METHODS):
@@ -59,7 +57,6 @@ def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) ->
 @pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
 def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
-    """At and next to quarter turns the offset methods answer as in Python."""
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in (*one.grid[::EVERY], *near(one.grid[::EVERY])):
         for method in offered(one, OFFSET_METHODS):

@@ -20,7 +20,6 @@ from tests.text.serial_pairs import SerialPair, serial_pairs_of
 
 @pytest.mark.parametrize("file", FILES)
 def test_everything_declared_is_used(file: str) -> None:
-    """Every object of every file uses what it declares."""
     assert [one for declared in parse(FILES[file], file) for one in unused(declared)] == []
 
 
@@ -90,7 +89,6 @@ PLANTED = {
 
 @pytest.mark.parametrize("case", PLANTED)
 def test_the_lint_sees(case: str) -> None:
-    """The lint finds every kind of thing that is not used."""
     old, new, wanted = PLANTED[case]
     text = _BLOCK if case != "an instance variable that is only written" else _BLOCK.replace("e := kept", "e := 1.0")
     assert old in text
@@ -169,7 +167,6 @@ def test_a_head_it_cannot_read_is_refused() -> None:
 
 @pytest.mark.parametrize("line", ["  a b : LREAL;", "  a : LREAL", "a : LREAL;", "  a : LREAL; b : LREAL;"])
 def test_a_declaration_it_cannot_read_is_refused(line: str) -> None:
-    """A line that declares no variables, or those of two types, is refused."""
     with pytest.raises(ValueError, match="not a declaration of variables"):
         declaration_of(f"FUNCTION F : BOOL\nVAR\n{line}\nEND_VAR")
 
@@ -192,7 +189,6 @@ def compare(library: Library, *methods: str) -> None:
 
 
 def test_unbroken_it_compiles_and_agrees() -> None:
-    """The changes below are made to a text that is right."""
     compare(compile_st(texts()), *COMPARISONS)
 
 
@@ -203,7 +199,6 @@ def test_a_broken_text_is_refused(name: str) -> None:
 
 
 def test_a_missing_object_is_refused() -> None:
-    """A text that uses a missing function is refused."""
     found = {file: text for file, text in texts().items() if file != "Softkin_Root.st"}
     with pytest.raises(StError, match="undeclared function Softkin_Root"):
         compile_st(found)
@@ -220,7 +215,6 @@ def test_a_fault_stops_the_text(name: str) -> None:
 
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_text_is_noticed(name: str) -> None:
-    """The comparison with Python notices a text that compiles and computes something else."""
     library = compile_st(texts(WRONG[name]))
     with pytest.raises(AssertionError):
         compare(library, name.split(":")[0])

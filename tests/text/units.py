@@ -23,12 +23,10 @@ def shared_texts() -> Mapping[str, str]:
 
 
 def file_of(mechanism: Mechanism) -> str:
-    """The file of a mechanism's unit."""
     return f"{mechanism.block_name}.st"
 
 
 def text_of(mechanism: Mechanism) -> str:
-    """The text of a mechanism's unit."""
     return (FOLDER / mechanism.family / file_of(mechanism)).read_text(encoding="utf-8")
 
 
@@ -60,11 +58,9 @@ def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, m
 def compiled_text(
     file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31
 ) -> Library:
-    """A text, compiled together with the shared objects."""
     return compile_st({**shared_texts(), file: text}, order, matrix_size, max_config_data)
 
 
 @cache
 def compiled_shared() -> Library:
-    """The shared objects alone."""
     return compile_st(shared_texts())

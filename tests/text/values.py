@@ -51,21 +51,18 @@ def axes(library: Library, values: Numbers) -> Any:
 
 
 def vector(library: Library, values: Numbers) -> Any:
-    """A vector."""
     made = new(library, VECTOR_TYPE)
     made.dX, made.dY, made.dZ = values
     return made
 
 
 def matrix(library: Library, rows: Iterable[Numbers]) -> Any:
-    """A rotation."""
     made = new(library, MATRIX_TYPE)
     library.set_rotation(made, tuple(rows))
     return made
 
 
 def frame(library: Library, position: Numbers, rows: Iterable[Numbers]) -> Any:
-    """A frame."""
     made = new(library, FRAME_TYPE)
     made.vT.dX, made.vT.dY, made.vT.dZ = position
     library.set_rotation(made.mR, tuple(rows))
@@ -86,12 +83,10 @@ def _configuration(library: Library, values: tuple[int, ...]) -> Any:
 
 
 def axes_of(value: Any) -> tuple[float, ...]:
-    """All entries of axis values."""
     return value.a0, value.a1, value.a2, value.a3, value.a4, value.a5
 
 
 def vector_of(value: Any) -> tuple[float, ...]:
-    """The coordinates of a vector."""
     return value.dX, value.dY, value.dZ
 
 
@@ -149,7 +144,6 @@ def element(value: Any, path: Path) -> Any:
 
 
 def put(value: Any, path: Path, scalar: Any) -> None:
-    """Write the scalar at a path."""
     *outer, last = path
     owner = element(value, tuple(outer))
     if isinstance(last, str):

@@ -24,7 +24,6 @@ SETTINGS = {
 
 
 def said(*command: str, **more: str) -> str:
-    """What a tool prints."""
     environment = {**os.environ, **more}
     done = subprocess.run(
         [sys.executable, "-m", *command], cwd=HERE, env=environment, capture_output=True, text=True, check=False

@@ -25,7 +25,6 @@ def scara() -> Scara4ZCcoupledType1:
 
 
 def moves(robot: Scara4ZCcoupledType1) -> tuple[float, ...]:
-    """Solutions, names, paths, radians."""
     frame, configuration = robot.forward((10.0, 20.0, 5.0, 30.0))
     assert_type(frame, Frame)
     assert_type(configuration, tuple[int, ...])

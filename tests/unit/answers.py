@@ -10,7 +10,6 @@ from derive.optimize.directions import added, unscaled
 
 
 def values(program: Program) -> dict[str, sp.Expr]:
-    """What the names of a program are bound to."""
     return {let.name.name: let.value for let in program.lets()}
 
 

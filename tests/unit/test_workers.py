@@ -8,7 +8,6 @@ HELD = Lock()
 
 
 def is_free() -> bool:
-    """Whether no thread holds the lock."""
     return HELD.acquire(blocking=False)
 
 

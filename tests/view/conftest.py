@@ -25,7 +25,6 @@ def pages(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 @pytest.fixture(scope="session")
 def seen(pages: tuple[Path, Path]) -> Seen:
-    """What one browser has seen."""
     found = available(lambda: driven(*pages, PICTURES))
     first = min(found["pictures"]["catalogue"], key=lambda marks: float(marks["first picture"]))["first picture"]
     text = f"the viewer was shown by {found['browser']}, its first picture after {first / 1000:.1f} s\n"

@@ -58,7 +58,6 @@ def kept_modules() -> Mapping[str, bytes] | None:
 
 
 def catalogue_page(folder: Path, modules: Mapping[str, bytes]) -> Path:
-    """The page of the catalogue."""
     files = {name: data for name, data in sorted(modules.items()) if name.endswith(".js")}
     path = folder / "softkin.html"
     path.write_text(page(content_of(catalogue(), files), PACKAGES), encoding="utf-8")
@@ -66,7 +65,6 @@ def catalogue_page(folder: Path, modules: Mapping[str, bytes]) -> Path:
 
 
 def machine_page(folder: Path, name: str) -> Path:
-    """A page with one machine of the catalogue."""
     path = folder / "machine.html"
     files = {path: text.encode() for path, text in files_of(part_of(name)).items() if path.endswith(".js")}
     content = Content(name, files, "softkin", {name: ""}, reports={name: ""})
@@ -116,12 +114,10 @@ ARM = "Kin_ArticulatedRobot_6DOF"
 
 
 def robot_of(state: Seen) -> Any:
-    """The machine of a state in Python."""
     return softkin.catalogue()[state["machine"]](**state["parameters"], limits=state["limits"])
 
 
 def frame_of(state: Seen) -> Any:
-    """The frame of a state."""
     return state["frame"]["position"], state["frame"]["rotation"]
 
 
@@ -145,7 +141,6 @@ ASKED = Path(__file__).with_name("model.mjs")
 
 
 def page_module(part: Part) -> Path:
-    """The module that asks the page of one machine."""
     machines = written(part).parent
     folder = machines / "page"
     shutil.copytree(RUNTIME / "view", folder, ignore=shutil.ignore_patterns("package*"))

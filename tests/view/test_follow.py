@@ -31,8 +31,6 @@ Shown = dict[str, Any]
 
 @dataclass
 class Followed:
-    """A browser with the page."""
-
     process: asyncio.subprocess.Process
 
     async def shown(self) -> Shown:

@@ -21,12 +21,10 @@ def signed(byte: int) -> int:
 
 
 def configuration_size(pair: SerialPair, sample: Sample) -> None:
-    """GetConfigurationDataSize returns the number of bytes of the configuration."""
     assert pair.controller.block.call("GetConfigurationDataSize") == len(pair.robot.CONFIGURATION) == len(sample.data)
 
 
 def default_configuration(pair: SerialPair, sample: Sample) -> None:
-    """GetDefaultConfigurationData writes the default of Python."""
     found = pair.controller.configuration(sample.data)
     assert pair.controller.block.call("GetDefaultConfigurationData", cd=found) is True
     assert tuple(found.abyData) == padded(pair.robot.DEFAULT_CONFIGURATION)

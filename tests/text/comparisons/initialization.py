@@ -19,11 +19,9 @@ def initialize(pair: SerialPair, sample: Sample) -> None:
 
 
 def why_initialize(pair: SerialPair, sample: Sample) -> None:
-    """InitializeReason is empty after success."""
     assert pair.controller.block.call("InitializeReason") == ""
 
 
 def name(pair: SerialPair, sample: Sample) -> None:
-    """GetKinematicsName returns the title of the mechanism."""
     expected = pair.mechanism.title or pair.mechanism.block_name
     assert pair.controller.block.call("GetKinematicsName") == expected

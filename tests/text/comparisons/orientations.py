@@ -7,7 +7,6 @@ from tests.text.serial_pairs import SerialPair
 
 
 def orientation(pair: SerialPair, sample: Sample) -> None:
-    """AxesToOrientation writes the rotation that Python gives."""
     expected = asked(pair.robot.orientation, sample.axes)
     assert_same(pair.controller.orientation(sample.axes), expected, pair, sample)
 

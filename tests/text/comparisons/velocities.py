@@ -76,7 +76,6 @@ def axis_accelerations(pair: SerialPair, sample: Sample, start: Frame | None = N
 
 
 def singularity(pair: SerialPair, sample: Sample) -> None:
-    """IsSingularity answers as Python."""
     expected = pair.robot.singularity(sample.axes).is_singular
     assert pair.controller.is_singular(sample.axes) == expected, f"{pair} {sample}"
 

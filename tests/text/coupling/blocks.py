@@ -13,25 +13,21 @@ from tests.catalogue.coupling.parts import ORIENTATIONS, Part, orientation_parts
 from tests.text import values
 from tests.text.both import Both, Machine
 from tests.text.controller import OK, Answer, Controller
-from tests.text.samples import Rows, Sample, tilted
+from tests.text.samples import NO_TURN, Rows, Sample, tilted
 from tests.text.units import compiled
 from tests.text.values import Numbers
 
 Z = (0.0, 0.0, 1.0)
-IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
 class Image:
-    """An OrientationSpace."""
-
     freedom: str
-    zero: Rows = IDENTITY
+    zero: Rows = NO_TURN
     base_axis: Numbers = Z
     flange_axis: Numbers = Z
 
     def in_python(self) -> softkin.OrientationImage:
-        """The same for the Python package."""
         return softkin.OrientationImage(self.freedom, self.zero, tuple(self.base_axis), tuple(self.flange_axis))
 
 
@@ -99,6 +95,8 @@ class OrientationPair(Both):
     controller: OrientationController
     part: Part
     regular: tuple[Sample, ...]
+    image: Image = Image("one")
+    """The flange that carries it, where a method is told one."""
 
     def __str__(self) -> str:
         return f"{self.robot!r}"
@@ -132,4 +130,4 @@ def _sample(robot: softkin.Mechanism, axes: list[float], rng: np.random.Generato
     )
 
 
-__all__ = ["IDENTITY", "ORIENTATIONS", "OrientationController", "Image", "OrientationPair", "orientation_pairs_of"]
+__all__ = ["ORIENTATIONS", "OrientationController", "Image", "OrientationPair", "orientation_pairs_of"]

@@ -24,8 +24,6 @@ POSES = 5
 
 
 class Coupling:
-    """A position block that carries an orientation block."""
-
     def __init__(self, first: Part, second: Part, order: str) -> None:
         self.first = Controller(compiled(first.mechanism, order), first.mechanism)
         self.second = OrientationController(compiled(second.mechanism, order), second.mechanism)
@@ -119,7 +117,6 @@ def _around(part: Part, block: Controller, axes: list[float], rng: np.random.Gen
 
 
 def _opened(robot: softkin.Mechanism, data: Any) -> tuple[int, ...]:
-    """The branches of a configuration, and open turns."""
     return (*data[: robot.BRANCHES], *(0,) * len(robot.PERIOD_AXES))
 
 

@@ -3,6 +3,7 @@ does."""
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,15 +11,14 @@ import pytest
 from derive.description.mechanism import Mechanism, Turning
 from tests.catalogue.coupling.determined import is_determined
 from tests.catalogue.coupling.parts import EVERYTHING, position_part
-from tests.harness.instance import Entry
-from tests.orthonormal import rodrigues
-from tests.text import values
+from tests.orthonormal import rodrigues, rows
+from tests.text import test_blocks_alone, test_garbage, test_initialise
 from tests.text.comparisons import COMPARISONS as COMMON
 from tests.text.comparisons.initialization import initialize
-from tests.text.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, asked, assert_same, is_close
-from tests.text.coupling.blocks import IDENTITY, ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
-from tests.text.samples import HALF_TURN, Rows, Sample, tilted
-from tests.text.units import compiled, public_methods
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, asked, assert_same, is_close
+from tests.text.coupling.blocks import ORIENTATIONS, Image, OrientationPair, orientation_pairs_of
+from tests.text.samples import HALF_TURN, NO_TURN, Rows, Sample, tilted
+from tests.text.units import public_methods
 
 INVALID = "SMC_TRAFO_INVALID_COUPLING"
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, 1.1e9)
@@ -27,27 +27,22 @@ CARRIERS = {"zero": "Kin_Gantry3", "one": "Kin_Scara2_Z", "three": "Kin_Pos_RRR"
 ORDERS = ("rows", "columns")
 
 
-def rows_of(matrix: np.ndarray) -> Rows:
-    """A matrix as rows of plain numbers."""
-    return tuple(tuple(row) for row in matrix.tolist())
-
-
 def images(rng: np.random.Generator) -> Iterator[tuple[Image, Callable[[], np.ndarray]]]:
     """Images of flanges, and orientations that such a flange has."""
     still = np.array(tilted(rng))
-    yield Image("zero", rows_of(still)), lambda: still
+    yield Image("zero", rows(still)), lambda: still
     yield Image("one"), lambda: _about(np.array((0.0, 0.0, 1.0)), rng)
     down = np.diag((1.0, -1.0, -1.0))
     yield (
-        Image("one", rows_of(down), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)),
+        Image("one", rows(down), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)),
         lambda: _about(np.array((0.0, 0.0, 1.0)), rng) @ down,
     )
     base, zero = np.array(tilted(rng))[:, 0], np.array(tilted(rng))
     yield (
-        Image("one", rows_of(zero), tuple(base.tolist()), tuple((zero.T @ base).tolist())),
+        Image("one", rows(zero), tuple(base.tolist()), tuple((zero.T @ base).tolist())),
         lambda: _about(base, rng) @ zero,
     )
-    yield Image("three", rows_of(still)), lambda: np.array(tilted(rng))
+    yield Image("three", rows(still)), lambda: np.array(tilted(rng))
 
 
 def _about(axis: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -74,10 +69,10 @@ def end_point(pair: OrientationPair, sample: Sample) -> None:
     rng = np.random.default_rng(37)
     place, own = (m[0] for m in pair.part.closure.frames(pair.part.closure.joints(np.array([sample.axes]))))
     configuration = pair.robot.forward(sample.axes)[1]
-    _, inside = asked(pair.robot.inverse, ((0.0, 0.0, 0.0), rows_of(own)), configuration, sample.axes)
+    _, inside = asked(pair.robot.inverse, ((0.0, 0.0, 0.0), rows(own)), configuration, sample.axes)
     for image, flange in images(rng):
         turned = flange()
-        status, found = pair.controller.end_point(rows_of(turned @ own), image, configuration, sample.axes)
+        status, found = pair.controller.end_point(rows(turned @ own), image, configuration, sample.axes)
         if not pair.robot.is_compatible(image.in_python()):
             assert status == INVALID
         elif image.freedom == "zero" and inside is None:
@@ -136,8 +131,8 @@ def with_orientation(pair: OrientationPair, sample: Sample) -> None:
     direction = tuple(row[2] for row in sample.rotation)
     z = (0.0, 0.0, 1.0)
     expected, how = {
-        Turning.NONE: (("zero", IDENTITY, z, z), ("Flange", False)),
-        Turning.ABOUT_Z: (("one", IDENTITY, z, z), ("Flange", True)),
+        Turning.NONE: (("zero", NO_TURN, z, z), ("Flange", False)),
+        Turning.ABOUT_Z: (("one", NO_TURN, z, z), ("Flange", True)),
         Turning.DIRECTION: (("one", sample.rotation, direction, z), ("MCS", False)),
         Turning.FULL: (("zero", sample.rotation, direction, z), ("MCS", True)),
     }[turning]
@@ -168,28 +163,25 @@ COMPARISONS = COMMON | {
 METHODS = [(mechanism, method) for mechanism in ORIENTATIONS for method in public_methods(mechanism)]
 
 
-@pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
-def test_every_method_is_here(mechanism: Mechanism) -> None:
-    """Every public method in the text of a block is compared."""
-    methods = compiled(mechanism).objects[mechanism.block_name].methods
-    own = tuple(m.name for m in methods if m.access == "PUBLIC")
-    assert public_methods(mechanism)[: len(own)] == own
-
-
 @pytest.mark.long("IsCompatibleWithPosKin")
 @pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str, order: str) -> None:
-    """A method of the block answers as the Python package does, in both storage orders."""
     for pair in orientation_pairs_of(mechanism, order):
         for sample in pair.regular:
             COMPARISONS[method](pair, sample)
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
-def test_the_number_of_axes(mechanism: Mechanism) -> None:
-    """NumAxes is the number of joints of the mechanism."""
-    assert orientation_pairs_of(mechanism)[0].controller.block.get("NumAxes") == len(mechanism.joints)
+def test_what_every_block_is_asked(mechanism: Mechanism) -> None:
+    """The number of its axes, its orientation, and what no interface of it has; it has no offset of its own."""
+    pairs = orientation_pairs_of(mechanism)
+    test_blocks_alone.test_the_number_of_axes(pairs)
+    if mechanism.joints:
+        test_blocks_alone.test_every_block_knows_its_orientation(pairs)
+        test_blocks_alone.test_a_further_method_answers_or_is_impossible(pairs)
+        asked_for = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), pairs[0].robot.DEFAULT_CONFIGURATION, pairs[0].regular[0].axes
+        assert pairs[0].controller.inverse_offset(*asked_for)[0] == IMPOSSIBLE
 
 
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
@@ -216,57 +208,10 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("freedom", CARRIERS)
 @pytest.mark.parametrize("mechanism", ORIENTATIONS, ids=lambda m: m.name)
-def test_garbage_and_no_initialisation(mechanism: Mechanism) -> None:
-    """Any scalar of any argument: an answer without a fault, and where it is a refusal nothing is written."""
-    pair = orientation_pairs_of(mechanism)[0]
-    fresh = compiled(mechanism).new(mechanism.block_name)
-    for method in (
-        m for m in METHODS if m[0] is mechanism and m[1].startswith(("GetPosition", "GetOrientation", "IsComp"))
-    ):
-        entry: Entry = pair.controller.block.routines[method[1].lower()]
-        for freedom in CARRIERS:
-            clean = _arguments(pair, entry, freedom)
-            pair.controller.block.call(method[1], **clean)
-            refusal = fresh.call(method[1], **_arguments(pair, entry, freedom))
-            assert refusal in (NOT_INITIALIZED, False)
-            inputs = [p.name for p in entry.routine.parameters if p.constant or not p.is_reference]
-            for name in inputs:
-                for path in values.scalars(clean[name]):
-                    if not path or not isinstance(values.element(clean[name], path), float):
-                        continue
-                    for number in GARBAGE:
-                        _call_with(pair, method[1], entry, freedom, name, path, number)
-
-
-def _call_with(
-    pair: OrientationPair, method: str, entry: Entry, freedom: str, name: str, path: values.Path, number: float
-) -> None:
-    given = _arguments(pair, entry, freedom)
-    values.put(given[name], path, number)
-    written = [k for k in given if hasattr(given[k], "_copy")]
-    before = {k: values.plain(given[k]) for k in written}
-    status = pair.controller.block.call(method, **given)
-    if status not in (OK, True, False):
-        assert status in (BAD_INPUT, INVALID)
-        after = {k: values.plain(given[k]) for k in written}
-        assert str(after) == str(before)
-
-
-def _arguments(pair: OrientationPair, entry: Entry, freedom: str) -> dict[str, object]:
-    library, sample = pair.library, pair.regular[0]
-    known = {
-        "mR": values.matrix(library, sample.rotation),
-        "mR_flange": values.matrix(library, sample.rotation),
-        "aRef": values.axes(library, sample.axes),
-        "cd": values.configuration(library, pair.robot.DEFAULT_CONFIGURATION),
-        "oriInfoBase": pair.controller.space(Image(freedom)),
-        "v": values.meaningless(library, values.VECTOR_TYPE),
-        "csOriKin": "MCS",
-        "bActive": False,
-    }
-    names = {p.name: p for p in entry.routine.parameters}
-    if "oriInfo" in names:
-        made = pair.controller.space(Image(freedom))
-        known["oriInfo"] = made if names["oriInfo"].constant else values.meaningless(library, values.IMAGE_TYPE)
-    return {name: known[name] for name in names}
+def test_garbage_and_no_initialisation(mechanism: Mechanism, freedom: str) -> None:
+    """As of every block, on a flange of every kind."""
+    pairs = tuple(replace(one, image=Image(freedom)) for one in orientation_pairs_of(mechanism))
+    test_garbage.test_garbage_in_one_number(pairs[:1] * 3)
+    test_initialise.test_no_method_works(pairs, test_initialise.fresh)

@@ -12,18 +12,16 @@ from tests.catalogue.coupling.parts import EVERYTHING, orientation_parts, positi
 from tests.catalogue.mounted.machines import TOOL, Sample, sample_of
 from tests.catalogue.references import held_at
 from tests.mechanisms import catalogue
-from tests.orthonormal import mirrored, repaired, slightly_off, too_far_off
+from tests.orthonormal import mirrored, repaired, rows, slightly_off, too_far_off
 from tests.text.controller import BAD_INPUT, OK, Controller, asked
 from tests.text.coupling.blocks import ORIENTATIONS, Image, orientation_pairs_of
 from tests.text.coupling.test_coupled_blocks import Coupling
-from tests.text.samples import Rows, tilted
+from tests.text.samples import NO_TURN, tilted
 from tests.text.units import compiled, public_methods
 
 MACHINES = tuple(m for _, m in catalogue() if m.task.position)
 ALONG = Frame((0.0, 0.0, 44.0))
 ASIDE = Frame((25.0, 0.0, 0.0))
-UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-"""A rotation that is commanded of a flange that keeps its own, or whose turn the position decides."""
 
 
 class Tooled:
@@ -89,7 +87,7 @@ def _agree(tooled: Tooled, robot: softkin.Mechanism, sample: Sample) -> None:
     for axes in sample.axes[:3]:
         frame, configuration = robot.forward(axes)
         if not tooled.robot.READS_ROTATION:
-            frame = Frame(frame.position, UNIT)
+            frame = Frame(frame.position, NO_TURN)
         far = Frame(tuple(20.0 * v + 1e4 for v in frame.position), frame.rotation)
         near = held_at(robot, axes, axes)
         others = [] if sample.mechanism.followed_turns else [Frame(frame.position, tilted(rng))]
@@ -106,11 +104,6 @@ def _agree(tooled: Tooled, robot: softkin.Mechanism, sample: Sample) -> None:
 CARRIERS = ("Kin_Gantry3", "Kin_Pos_RRR", "Kin_Scara3_Z")
 """Flanges that keep their orientation, that turn freely, and that follow the twist."""
 PAIRS = [(c, w) for c in CARRIERS for w in ORIENTATIONS]
-
-
-def rows(matrix: np.ndarray) -> Rows:
-    """A matrix as rows of plain numbers."""
-    return tuple(map(tuple, matrix.tolist()))
 
 
 @pytest.mark.parametrize(("carrier", "wrist"), PAIRS, ids=[f"{c}-{w.name}" for c, w in PAIRS])
@@ -192,7 +185,7 @@ def test_what_is_no_rotation_is_refused(wrist: Mechanism) -> None:
     for matrix in (*too_far_off(rotation), *mirrored(rotation)):
         wrong = rows(matrix)
         assert (one.controller.end_point(wrong, Image("zero"), data, axes)[0] == BAD_INPUT) == reads
-        assert one.controller.end_point(UNIT, Image("zero", wrong), data, axes)[0] == BAD_INPUT
+        assert one.controller.end_point(NO_TURN, Image("zero", wrong), data, axes)[0] == BAD_INPUT
         asked = one.controller.with_orientation(wrong, Image("one"))[0]
         assert (asked == BAD_INPUT) == (wrist.task.turning in (Turning.DIRECTION, Turning.FULL))
         assert (one.controller.total(Image("zero", wrong))[0] == BAD_INPUT) == (one.robot.FREEDOM != "three")

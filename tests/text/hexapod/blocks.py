@@ -11,7 +11,6 @@ from tests.text.units import compiled
 
 @cache
 def controller(name: str) -> Controller:
-    """The block of a machine, initialised."""
     return made(machines()[name], compiled(MECHANISM))
 
 

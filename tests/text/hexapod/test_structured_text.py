@@ -11,21 +11,20 @@ from softkin import Status
 from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod import test_refusals
-from tests.catalogue.hexapod.machines import Array, Machine, found_from, machines, rotation, without_mode
+from tests.catalogue.hexapod.machines import Array, Machine, found_from, machines, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
-from tests.text import test_garbage, test_initialise, values
+from tests.text import test_blocks_alone, test_garbage, test_initialise, values
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
 from tests.text.loops.machines import Loop, loops_of
+from tests.text.loops.test_every_statement import compare_all
 from tests.text.statements import Statements
 from tests.text.test_every_statement import left_out
 from tests.text.units import compiled, compiled_text, file_of, text_of
-from tests.text.values import PROPERTIES_TYPE, meaningless
 
 
 def compare(machine: Machine, block: Controller, position: Array, turn: Array) -> None:
-    """All methods at a pose that the inverse accepts."""
     robot = machine.robot
     axes = robot.inverse((position, turn))
     assert block.inverse(position, turn, (), (0.0,) * 6) == (OK, axes)
@@ -51,16 +50,6 @@ def test_blocks_share_nothing() -> None:
     for _ in range(2):
         for machine, block in pairs:
             compare_some(machine, block, 3)
-
-
-def test_it_says_what_the_flange_can_do() -> None:
-    """The orientation images of the block are those of a platform with three rotations."""
-    block, turn = controller("nominal"), rotation(10.0, -20.0, 30.0)
-    status, (freedom, *_) = block.image("GetFlangeOrientationImageTotal")
-    assert (status, freedom) == (OK, "three")
-    status, (freedom, zero, *_) = block.image_with_orientation(turn)
-    assert (status, freedom) == (OK, "zero")
-    assert_allclose(zero, turn, atol=0.0)
 
 
 def in_the_other_mode() -> tuple[float, ...]:
@@ -116,14 +105,14 @@ def test_every_statement_runs() -> None:
     with statements.watched():
         for name in ("nominal", "lopsided"):
             compare_some(machines()[name], controller(name), 2)
-        test_it_says_what_the_flange_can_do()
+        compare_all(loops[1], loops[1].regular[0])
+        test_blocks_alone.test_the_number_of_axes(loops)
         test_initialise.test_no_method_works(loops, test_initialise.fresh)
         test_the_other_assembly_mode_is_refused()
         test_without_control_there_is_no_jacobian()
         test_garbage.test_garbage_in_one_number(loops[:2] * 2)
         for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
             test_refusals.test_what_is_no_rotation(turn)
-        check_axes()
         check_initialize(loops)
         check_bounds()
         check_other_poses()
@@ -156,20 +145,6 @@ def check_other_poses() -> None:
     }
     for method, given in given_to.items():
         assert block.block.call(method, **given, a=at_home, f=nowhere) == BAD_INPUT
-
-
-def check_axes() -> None:
-    """Names, numbers, and limits: of every axis, and of one that does not exist."""
-    machine = machines()["asymmetric"]
-    block = made(machine, compiled(MECHANISM), lower_l2=100.0, upper_l2=900.0)
-    for axis in range(7):
-        properties = meaningless(block.library, PROPERTIES_TYPE)
-        block.block.call("GetAxisProperties", props=properties, udiAxis=axis)
-        if axis < 6:
-            limits = (100.0, 900.0) if axis == 1 else (machine.offsets[axis], 1e9 + machine.offsets[axis])
-            found = properties.limits.xUnlimited, properties.limits.dLower, properties.limits.dUpper
-            assert found == (False, *limits)
-    assert block.block.get("NumAxes") == 6 and block.block.call("GetKinematicsName") == "Kin_Hexapod"
 
 
 def check_initialize(loops: tuple[Loop, ...]) -> None:

@@ -29,8 +29,6 @@ BROKEN = 12
 
 @dataclass(frozen=True)
 class Loop(Both):
-    """A machine, and samples of it."""
-
     machine: Machine
     regular: tuple[Sample, ...]
     """At a pose."""

@@ -12,13 +12,7 @@ from tests.catalogue.closure import Closure
 from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
 from tests.catalogue.loops.test_impossible import EDGES as ENDS
 from tests.catalogue.loops.test_impossible import IMPOSSIBLE
-from tests.text import (
-    test_axis_settings,
-    test_blocks_alone,
-    test_configuration_blocks,
-    test_garbage,
-    test_initialise,
-)
+from tests.text import test_axis_settings, test_blocks_alone, test_configuration_blocks, test_garbage, test_initialise
 from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
 from tests.text.loops import test_branches
 from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loop_of, loops_of

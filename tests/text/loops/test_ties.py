@@ -71,7 +71,6 @@ def test_the_nearer_slide_is_chosen_in_every_unit(mechanism: Mechanism, unit: fl
 
 
 def answers(robot: softkin.Mechanism, controller: Controller, position: Array, near: Array) -> list[Array]:
-    """With all branches open: scalar, batch, Structured Text, and carrying a turn about z."""
     width = len(near)
     automatic = (0,) * len(robot.CONFIGURATION)
     found = [np.array(robot.inverse((position, IDENTITY), automatic, near))]

@@ -97,7 +97,6 @@ WORST = 1e-6
 
 
 def self_test(mechanism: Mechanism) -> dict[str, str]:
-    """The text of a mechanism's self-test."""
     name = f"{mechanism.block_name}_SelfTest.st"
     return {name: SELF_TESTS[name]}
 

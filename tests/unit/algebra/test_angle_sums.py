@@ -25,7 +25,6 @@ L = sp.Symbol("link", positive=True)
     ],
 )
 def test_names(terms: Terms, name: str) -> None:
-    """A sum of angles has a name made of its terms."""
     assert name_of(terms) == name
     assert symbol_of_sum(terms) == real(name)
 
@@ -44,7 +43,6 @@ def test_names(terms: Terms, name: str) -> None:
     ],
 )
 def test_plain_sums_alone_have_terms(argument: sp.Expr, terms: Terms | None) -> None:
-    """Only sums of whole angles with signs have terms."""
     assert terms_of(argument, ANGLES) == terms
 
 
@@ -60,7 +58,6 @@ SUMS = [
 @pytest.mark.parametrize("word, function", [("cos", sp.cos), ("sin", sp.sin)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_recognised(terms: Terms, word: str, function: type[sp.Function], sign: int) -> None:
-    """The expanded sine or cosine of a sum of angles is recognised, with its sign."""
     argument = sp.Add(*[a * s for a, s in terms])
     assert recognise(sign * polynomial(function(argument), ANGLES, ()), ANGLES) == (sign, word, terms)
 
@@ -70,5 +67,4 @@ def test_recognised(terms: Terms, word: str, function: type[sp.Function], sign: 
     [sp.cos(A1), 2 * sp.cos(A1 + A2), sp.cos(A1) * sp.cos(A2), sp.cos(A1 + A2) + 1, L, sp.cos(A1 + 2 * A2)],
 )
 def test_not_recognised(expression: sp.Expr) -> None:
-    """Other expressions are not taken for the sine or cosine of a sum."""
     assert recognise(polynomial(expression, ANGLES, ()), ANGLES) is None

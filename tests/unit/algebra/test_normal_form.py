@@ -50,7 +50,6 @@ EXPRESSIONS = {
     x=NUMBERS,
 )
 def test_the_same_function(name: str, turns: tuple[float, ...], s: int, t: int, link: float, x: float) -> None:
-    """The normal form has the values of the expression."""
     expression = EXPRESSIONS[name]
     form = polynomial(expression, ANGLE_NAMES, (S, T))
     values = {"s": s, "t": t, "link": link, "x": x, **{f"a{k}": v for k, v in enumerate(turns, 1)}}
@@ -71,7 +70,6 @@ def test_normal(name: str) -> None:
 
 
 def test_equal_functions_have_one_form() -> None:
-    """Expressions that are equal modulo sin² + cos² = 1 have one normal form."""
     for first, second in [
         (sp.sin(A1) ** 2 + sp.cos(A1) ** 2, sp.Integer(1)),
         (sp.cos(A1 - A2) ** 2 - 1, -(sp.sin(A2 - A1) ** 2)),
@@ -85,7 +83,6 @@ def test_equal_functions_have_one_form() -> None:
 
 
 def test_signs_are_only_signs_where_they_are_named() -> None:
-    """Only symbols that are named as signs have the square 1."""
     assert reduce_units(S**2, ()) == S**2
     assert reduce_units(S**4 * X**2, (), (S,)) == X**2
     assert reduce_units(sine(A1) ** 2, (A2,)) == sine(A1) ** 2
@@ -96,7 +93,6 @@ def test_pi_is_half_a_turn_in_degrees() -> None:
 
 
 def test_linear_coefficients() -> None:
-    """The coefficients of an expression that is linear in given symbols are found; other expressions have none."""
     c, s = cosine(A1), sine(A1)
     assert linear_coefficients(L * c - X * s + 3, (c, s)) == ([L, -X], 3)
     assert linear_coefficients(X + 1, (c, s)) == ([0, 0], X + 1)
@@ -105,7 +101,6 @@ def test_linear_coefficients() -> None:
 
 
 def test_split_known() -> None:
-    """An expression is split into the part with the unknowns and the known part."""
     c = cosine(A1)
     moving, known = split_known(L * (c + 1) - X + c * X, (c,))
     assert (moving, known) == (L * c + c * X, L - X)
@@ -117,7 +112,6 @@ def test_split_known() -> None:
     [(X, False), (-X, False), (sp.Integer(2), False), (2 * X, True), (X + 1, True), (X**2, True)],
 )
 def test_what_deserves_a_name(expression: sp.Expr, compound: bool) -> None:
-    """A sum or product gets a name, and a single symbol with a factor does not."""
     assert is_compound(expression) is compound
 
 

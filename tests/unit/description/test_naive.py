@@ -50,26 +50,18 @@ def nominal(value: str) -> str:
 
 
 FAULTS = {
-    "a name with a typing error": (chained("L2", "L22"), ":9: NameError: name 'L22' is not"),
-    "a parenthesis too few": (written(chain="Rz(A1 * Tx(L1"), "SyntaxError: '(' was never closed"),
     "a joint too few in the list": (written(joints="(A1, A2, Z1)"), "chain reads 'a4', which is not a joint or a par"),
     "a joint too few in the chain": (chained("* Tz(Z1) ", ""), "joint 'Z1' occurs nowhere in"),
-    "a parameter too few": (written(parameters="(L1,)"), "chain reads 'link_2', which is not a joint or a parameter"),
-    "a joint used twice": (chained("A2", "A1"), "joint 'A2' occurs nowhere in the closure"),
     "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'A1' is given 2 times"),
     "a joint by its name": (chained("A1", '"A1"'), "TypeError: Rz('A1') needs a joint, a param"),
-    "nothing for a joint": (chained("A1", "None"), "Rz(None) needs a joint, a parameter, a num"),
     "names for joints": (written(joints='("A1", "A2")'), "joints must not hold 'A1': as in joints=(A1, A2)"),
     "names for parameters": (written(parameters='("link_1",)'), "parameters must not hold 'link_1': as in"),
     "one joint without a comma": (written(joints="(A1)"), "joints must be a tuple, not a Joint: a comma makes"),
-    "a sum of frames": (written(chain="Rz(A1) + Tx(L1)"), "TypeError: unsupported operand type(s) for +: 'Chain' a"),
     "a matrix for a chain": (written(chain=f"({CHAIN}).matrix()"), "chain must not be a ImmutableDenseMatrix: as in"),
     "a list for a chain": (written(chain="[Rz(A1), Tx(L1)]"), "chain must not be a list: as in chain=Rz(A1) * Tx(L1)"),
     "a length that is no number": (nominal('float("nan")'), "parameter 'link_1': its nominal value is not a number"),
-    "a length in words": (nominal('"300"'), "parameter 'link_1': '300' is not a number"),
     "a length of nothing": (nominal("None"), "parameter 'link_1': None is not a number"),
     "a length of zero": (nominal("0"), "parameter 'link_1': its nominal value 0 is outside its range ]0 .. 1e+09]"),
-    "no nominal value": (written('L1 = length("link_1", "l")'), "TypeError: length() missing 1 required keyword-only"),
     "an exception in a function": (
         written("def chain():\n    return 1 / 0\n", chain="chain()"),
         "ZeroDivisionError: division by zero",
@@ -87,13 +79,10 @@ FAULTS = {
         "positive holds a2 > 0, which is true or false: state the quantity whose sign tells",
     ),
     "one positive quantity": (written(positive="sin(A2)"), "positive must be a tuple, not a sin, as in positive=(R,)"),
-    "rows that do not exist": (written(task='Task("zx")'), "commands 'zx': it must be coordinates in the order x"),
     "a row that the joints move and nobody commands": (
         written(task='Task("xz")', joints="(A1, A2)", chain="Rz(A1) * Tx(L1) * Ry(A2) * Tx(L2)", branches=""),
         'y is not commanded but the joints move it; command it too: task=Task("xyz")',
     ),
-    "a word for a task": (written(task='"xyz"'), "task must not be 'xyz': as in task=Task(\"xyz\")"),
-    "a word for a turning": (written(task='Task("xyz", "about z")'), "task: 'about z' is no Turning: as in task"),
     "more rows than joints": (
         written(task='Task("xyz", Turning.FULL)'),
         "the task commands 6 quantities (x, y, z, turn x, turn y, turn z), and there are only 4 joints; command less",
@@ -102,10 +91,6 @@ FAULTS = {
     "no link between two axes": (
         written(chain=CHAIN.replace("* Tx(L2) ", ""), parameters="(L1,)"),
         "the closure does not determine a2, a4: 4 unknowns in 5 equations (x, y, z, cos heading, sin heading) leave 1",
-    ),
-    "a branch with one sign": (
-        written(branches='(branch("elbow", sin(A2), right=1, left=1),)'),
-        "branch 'elbow' needs two names with the signs +1 and -1, not {'right': 1, 'left': 1}",
     ),
     "a branch without a comma": (
         written(branches='branch("elbow", sin(A2), right=1, left=-1)'),
@@ -125,16 +110,11 @@ FAULTS = {
         "Tz(sqrt(z1)) of the chain holds sqrt(z1): it is made of",
     ),
     "one over a joint": (chained("Tz(Z1)", "Tz(1 / Z1.symbol)"), "Tz(1/z1) of the chain holds 1/z1: it is made of"),
-    "a sine of another library": (
-        written("import math", branches='(branch("elbow", math.sin(A2), right=1, left=-1),)'),
-        "TypeError: must be real number, not Joint",
-    ),
     "a flange that is tilted": (
         chained("Rz(A4)", "Rx(pi / 4) * Rz(A4)"),
         "its rotation is not one turn about z, it turns about z, x, z; command the whole rotation, or a direction, or",
     ),
     "a word for a vendor": (written(vendor='"Acme"'), "vendor must not be 'Acme': as in vendor=Vendor.TEXTBOOK"),
-    "a name with a blank": (written(name='"Kin Naive"'), "'Kin Naive' cannot name a function block"),
     "a class with a blank": (
         written(class_name='"My Arm"'),
         "'My Arm' cannot name a class of Python; take letters and",
@@ -143,7 +123,6 @@ FAULTS = {
         written(class_name='"class"'),
         "'class' cannot name a class of Python; take letters and",
     ),
-    "no mechanism": (HEAD, "defines no MECHANISM"),
     "a name for a held joint": (written(held='("A1",)'), "held must not hold 'A1': as in held=(E1,)"),
     "three numbers in a row of a table": (
         written(chain="denavit_hartenberg((A1, 0, L1), (A2, 0, L2, 0))"),
@@ -154,11 +133,6 @@ FAULTS = {
         written('A2 = rotary("A2", "turn", limit=(-90, 90))'),
         "unexpected keyword argument 'limit'; did you mean 'limits'?",
     ),
-    "a field of a length with a typing error": (
-        written('L1 = length("link_1", "link", nominl=1)'),
-        "unexpected keyword argument 'nominl'; did you mean 'nominal'?",
-    ),
-    "a frame in capitals": (chained("Rz(A2)", "RZ(A2)"), "name 'RZ' is not defined; did you mean 'Rz'?"),
     "a joint in small letters": (chained("A2", "a2"), ":9: NameError: name 'a2' is not defined; did you mean 'A2'?"),
     "a misspelt member": (
         written(task='Task("xyz", Turning.ABOUTZ)'),
@@ -168,19 +142,11 @@ FAULTS = {
         written("import sympy", branches='(branch("elbow", sympy.Sin(A2), right=1, left=-1),)'),
         "AttributeError: module 'sympy' has no attribute 'Sin'; did you mean 'sin'?",
     ),
-    "an area for a length": (
-        chained("Tx(L1)", "Tx(L1 * L2)"),
-        "Tx(link_1*link_2) of the chain shifts by link_1*link_2, which is no length: its powers must add to 1",
-    ),
     "a slide times a length": (
         chained("Tz(Z1)", "Tz(L1 + Z1 * L1 / 2)"),
         "of the chain shifts by link_1*z1/2, which is no length: its powers must add to 1",
     ),
     "a misspelt import": (written("from derive.mechanism import Mechanizm"), "did you mean 'Mechanism'?"),
-    "limits the wrong way round": (
-        written('A2 = rotary("A2", "turn", limits=(90, -90))'),
-        "joint 'A2': its limits (90, -90) are empty; state the lower end first",
-    ),
     "a joint as a factor": (chained("Rz(A2)", "A2"), "TypeError: A2 is a number, not a frame: as in Rz(A2) or Tz(A2)"),
     "a joint as the first factor": (
         chained("Rz(A1)", "A1"),
@@ -208,7 +174,6 @@ def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
 
 
 def test_lists_are_as_good_as_tuples(tmp_path: Path) -> None:
-    """What can only be meant in one way is understood."""
     path = tmp_path / "kin_naive.py"
     path.write_text(written(joints="[A1, A2, Z1, A4]", parameters="[L1, L2]"))
     assert load(path).joints == load_sound(tmp_path).joints

@@ -47,7 +47,6 @@ class Drawn:
 
     @property
     def axes(self) -> np.ndarray:
-        """A row of axis values: those of the drawing."""
         return np.array([[value for _, value in self.drawing.axes]])
 
     @property

@@ -87,7 +87,6 @@ def test_no_length_is_told_as_a_number(mechanism: Mechanism) -> None:
 
 
 def test_axes_and_lengths_are_in_the_text(mechanism: Mechanism) -> None:
-    """The text of a picture names every axis and every length."""
     text = " ".join(_in_full(element.text or "") for element in _texts(mechanism))
     text = " ".join([text, *_series(text)])
     declaration = _block(mechanism).split("END_VAR")[0]
@@ -126,7 +125,6 @@ def _extent(element: ElementTree.Element) -> tuple[float, float, float, float]:
 
 
 def test_no_text_is_cut_off_or_covers_another(mechanism: Mechanism) -> None:
-    """Every text is inside the picture, and no two texts touch."""
     for root in _drawn(mechanism):
         width, height = _size(root)
         found = [(element.text, _extent(element)) for element in root.iter(_TEXT)]
@@ -154,7 +152,6 @@ def test_no_picture_without_a_block() -> None:
 
 @pytest.mark.long
 def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
-    """Equal marks give equal files, which hold no date."""
     one = drawn("Kin_P2C_Type2")
     drawings = [page(one.drawing, "Title", {"inner_arm": "dInnerArm"}) for _ in range(2)]
     first, second = (pictures(p.marks, p.width, p.height) for p in drawings)
@@ -175,7 +172,6 @@ def test_the_same_marks_give_the_same_bytes_without_a_date() -> None:
     ],
 )
 def test_labels_are_spelled(label: str, text: str) -> None:
-    """A label shows parameters as inputs of the block."""
     import sympy as sp
 
     names = {"link_length_1": "dLinkLength1", "pitch_zc": "dPitchZC"}
@@ -232,7 +228,6 @@ WRONG = {
 @pytest.mark.long
 @pytest.mark.parametrize("case", WRONG)
 def test_refused(case: str) -> None:
-    """A mechanism that cannot be drawn is refused with a message that names the fault."""
     mechanism, message = WRONG[case]
     kinematics = build(validate(mechanism))
     with pytest.raises(DescriptionError, match=message):
@@ -263,7 +258,6 @@ def test_no_pose_can_be_drawn() -> None:
 
 
 def test_a_bar_of_something_unknown_is_refused_before() -> None:
-    """A bar that reads an unknown parameter is refused when the description is checked."""
     strange = CATALOGUE["Kin_PCC"].parameters[0]
     with pytest.raises(DescriptionError, match="bar '1' reads 'link_length_1', which is not a joint or a parameter"):
         validate(_scissor(rod("1", (A1, 0), (X, Y), strange)))

@@ -36,7 +36,6 @@ def loop(request: pytest.FixtureRequest) -> Drawn:
 
 
 def test_the_closure_holds_at_the_drawn_tool_frame(one: Drawn) -> None:
-    """The drawn pose satisfies the closure equations."""
     residual = one.closure.residual(one.joints, one.pose, one.parameters)
     scale = 1.0 + np.abs(one.pose).max() ** 2
     assert np.abs(residual).max() < 1e-5 * scale
@@ -59,7 +58,6 @@ def test_bars_and_links_have_the_lengths_of_parameters(one: Drawn) -> None:
     [("Kin_Delta_P3C_Type3", {"azimuth_1", "azimuth_2", "azimuth_3"}), ("Kin_Tripod_Linear", {"rail_angle"})],
 )
 def test_angles_are_as_wide_as_their_parameters(name: str, angles: set[str]) -> None:
-    """Those of a machine that are not zero have an arc, and the others are named."""
     one = drawn(name)
     scene = one.drawing.scene
     nominal = {p.name: p.nominal for p in one.mechanism.parameters}
@@ -98,7 +96,6 @@ def _moved(one: Drawn, index: int) -> np.ndarray:
 
 
 def test_arrows_of_a_chain_point_where_the_axis_goes(chain: Drawn) -> None:
-    """The tool goes with a turn about the drawn axis, and along a drawn arrow, as the chain multiplied out says."""
     scene, mechanism = chain.drawing.scene, chain.mechanism
     for index, joint in enumerate(mechanism.joints):
         name = axis_name(joint)
@@ -189,7 +186,6 @@ def test_rails_that_begin_in_one_point_are_stacked() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", SLIDES)
 def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
-    """The arrow of a linear axis is parallel to its rail."""
     drawing = drawn(name).drawing
     assert drawing.scene.slides
     ends = rails(drawing.scene)

@@ -154,7 +154,6 @@ def test_frames_are_not_added() -> None:
 
 @given(*[st.tuples(ANGLES, ANGLES, ANGLES, PLACES)] * 2)
 def test_frames_multiply_as_matrices(first: tuple[object, ...], second: tuple[object, ...]) -> None:
-    """The product and the inverse, with a frame, a matrix and a pair on either side."""
     a, b = Frame.from_euler(*first), Frame.from_euler(*second)  # type: ignore[arg-type]
     expected = a.matrix @ b.matrix
     for product in (a @ b, a @ b.matrix, a @ (b.position, b.rotation), a.matrix @ b, tuple(a) @ b):
@@ -184,7 +183,6 @@ def test_a_frame_is_a_pair_and_an_array() -> None:
 
 
 def test_every_call_takes_every_form() -> None:
-    """A frame, a matrix, its rows as lists, and a pair: the same answer, alone and in a batch."""
     robot = softkin.ArticulatedRobot6DOF(d1=400.0, a1=25.0, a2=455.0, a3=35.0, d4=420.0, d6=80.0)
     axes = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
     frame, configuration = robot.forward(axes)

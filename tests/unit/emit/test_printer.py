@@ -66,7 +66,6 @@ def _namespace(module: object) -> dict[str, object]:
 @settings(deadline=None)
 @given(expression=EXPRESSIONS, values=VALUES)
 def test_expressions_mean_the_same_in_print(expression: sp.Expr, values: dict[str, float]) -> None:
-    """A printed expression has the value of the reference interpreter, on plain numbers and on arrays."""
     with np.errstate(all="ignore"):
         expected = float(evaluate(expression, {k: np.asarray(v) for k, v in values.items()}))
         scalar = eval(ScalarPrinter().print(expression), _namespace(_scalar), dict(values))
@@ -78,13 +77,11 @@ def test_expressions_mean_the_same_in_print(expression: sp.Expr, values: dict[st
 
 @given(value=st.floats(allow_nan=False, allow_infinity=False))
 def test_literals_are_exact(value: float) -> None:
-    """A printed literal is read back as the same real number."""
     assert float(literal(value)) == value
     assert not literal(value).lstrip("-").isdigit()
 
 
 def test_names_of_python_are_avoided() -> None:
-    """A name that Python or the generated method uses gets an underscore."""
     assert [spelled(n) for n in ("lambda", "root", "axes", "link_length_1")] == [
         "lambda_",
         "root_",
@@ -97,7 +94,6 @@ def test_names_of_python_are_avoided() -> None:
 @settings(deadline=None, max_examples=6)
 @given(expressions=st.lists(EXPRESSIONS, min_size=20, max_size=40))
 def test_laid_out_statements_mean_the_same(expressions: list[sp.Expr]) -> None:
-    """The formatter changes the layout of statements and not their meaning."""
     printers = (ScalarPrinter(), ArrayPrinter())
     lines = [f"        result = {printer.print(e)}" for printer in printers for e in expressions]
     text = "\n".join(["def f(first, second, third):", "    if first:", *lines])
@@ -109,7 +105,6 @@ def test_laid_out_statements_mean_the_same(expressions: list[sp.Expr]) -> None:
 
 
 def test_what_is_no_python_is_not_laid_out() -> None:
-    """Text that is no Python raises an error with the name of the file."""
     with pytest.raises(UnformattedError, match="wrong.py"):
         formatted({"right.py": "a = 1\n", "wrong.py": "a = (\n"})
 
@@ -140,8 +135,6 @@ METHOD = Method("demo", "", PROGRAM, (Argument("axes", "Reals", ("axis_x", "axis
 
 
 class _Machine:
-    """Constants as the generated methods find them."""
-
     class constants:
         scale = 2.0
 
@@ -157,7 +150,6 @@ def _compiled(body: list[str], module: object) -> object:
 @settings(deadline=None)
 @given(x=st.floats(allow_nan=True), y=st.floats(-150.0, 150.0))
 def test_programs_mean_the_same_in_print(x: float, y: float) -> None:
-    """A printed program has the outputs and the status of the reference interpreter, on plain numbers and on arrays."""
     outputs, status = run(PROGRAM, {"axis_x": np.array([x]), "axis_y": np.array([y]), "scale": np.array([2.0])})
     scalar = _compiled(scalar_body(METHOD), _scalar)(_Machine(), (x, y))  # type: ignore[operator]
     with np.errstate(all="ignore"):

@@ -56,7 +56,6 @@ def called(program: Program, *given: float, names: tuple[str, ...] = ("x", "y"))
 
 
 def test_a_refusal_names_the_axis_and_the_amount() -> None:
-    """A printed condition refuses with the axis, the reason, the unit and the missing amount."""
     require = Require(sp.Gt(X, 1), Outcome.UNREACHABLE, reason=about_joint(Q1, Why.OUT_OF_REACH, 1 - X, Unit.LENGTH))
     program = normalise("p", [require], [Output("o", X + Y)])
     assert called(program, 3.0, 4.0) == (7.0,)
@@ -100,14 +99,12 @@ def test_another_turn_is_named(axis: float, turn: int, words: str) -> None:
 
 
 def test_a_refusal_without_a_reason_is_none_of_the_inverse() -> None:
-    """A condition without a reason cannot be printed in a method that explains its refusals."""
     program = normalise("p", [Require(sp.Gt(X, 0), Outcome.UNREACHABLE)], [Output("o", X)])
     with pytest.raises(TypeError, match="gives no reason"):
         lines_of(program)
 
 
 def test_words_of_a_text_are_no_calls() -> None:
-    """Names in strings and comments do not count as calls of primitives."""
     assert primitives_in(['return Diagnosis(Status.OK, "the root of cos", 0.0)', "x = sin(y)  # cos"]) == ["sin"]
 
 
@@ -126,7 +123,6 @@ def test_periods_of_arrays_are_those_of_numbers(axis: float) -> None:
 
 
 def test_a_period_that_no_byte_can_hold_is_open() -> None:
-    """A turn with a number beyond a signed byte has the period number 0."""
     assert (period(360.0 * 126), period(360.0 * 127), period(-360.0 * 127), period(-360.0 * 128)) == (127, 0, -127, 0)
 
 
@@ -140,13 +136,11 @@ def test_first_byte_varies_fastest() -> None:
 
 
 def test_branch_bytes() -> None:
-    """A branch byte is 1 or 2 by the sign of the margin, and 3 where the branches coincide."""
     assert [branch_byte(m) for m in (0.5, -0.5, 1e-11, -1e-11, 0.0)] == [1, 2, 3, 3, 3]
 
 
 @given(byte=st.integers(-128, 255))
 def test_bytes_are_signed(byte: int) -> None:
-    """A byte from 128 to 255 stands for a negative number, on plain numbers and on arrays."""
     expected = byte - 256 if byte > 127 else byte
     assert bytes_of([byte, 1], 2) == (expected, 1)
     robot = SimpleNamespace(_branch_bytes=[1], _period_bytes=[0])
@@ -159,7 +153,6 @@ NO_NUMBERS = ("123", b"\0" * 24, (1, 2), (1, 2, 3, 4), (1, 2, "3"), (1, 2, None)
 
 @pytest.mark.parametrize("values", NO_NUMBERS)
 def test_what_are_no_numbers_is_refused(values: object) -> None:
-    """Arguments that are no numbers raise BAD_INPUT with the name of the argument."""
     with pytest.raises(KinematicsError) as caught:
         reals(values, 3, "axes")  # type: ignore[arg-type]
     assert caught.value.status is Status.BAD_INPUT
@@ -170,14 +163,12 @@ def test_what_are_no_numbers_is_refused(values: object) -> None:
     "values", [(1, 2, 3), [1.0, 2.0, 3.0], np.array([1, 2, 3]), iter((1, 2, 3)), (np.float32(1), 2, 3)]
 )
 def test_any_sequence_of_numbers_is_taken(values: object) -> None:
-    """Every kind of sequence of three numbers becomes a tuple of floats."""
     found = reals(values, 3, "axes")  # type: ignore[arg-type]
     assert found == (1.0, 2.0, 3.0) and all(type(v) is float for v in found)
 
 
 @pytest.mark.parametrize("bytes_", ["12", (1.0, 0), (1,), (1, 0, 0), (1, 256), (1, -129), (1, 10**9), None])
 def test_what_are_no_bytes_is_refused(bytes_: object) -> None:
-    """A configuration that does not consist of bytes raises BAD_INPUT."""
     with pytest.raises(KinematicsError) as caught:
         bytes_of(bytes_, 2)  # type: ignore[arg-type]
     assert caught.value.status is Status.BAD_INPUT
@@ -190,7 +181,6 @@ def test_what_are_no_three_rows_is_refused(rows: object) -> None:
 
 
 def test_rows_of_arrays() -> None:
-    """A table of a batch has the right shape, or raises BAD_INPUT with the name of the argument."""
     assert numbers(np.empty((0, 3)), None, (3,), "positions").shape == (0, 3)
     assert numbers((1, 2, 3), 5, (3,), "references").shape == (5, 3)
     for wrong in ([1, 2, 3], [["a", "b", "c"]], [[1, 2], [3]], [[math.nan] * 4], [[None] * 3]):

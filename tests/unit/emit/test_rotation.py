@@ -14,16 +14,22 @@ from derive.equations.rotation_repair import rotation_program
 from derive.ir.interpret import run
 from derive.ir.symbols import ROTATION_ENTRIES
 from derive.report.reasons import rotation_texts
-from tests.orthonormal import Array, error, mirrored, random_rotations, repaired, single, slightly_off, too_far_off
+from tests.orthonormal import (
+    Array,
+    error,
+    mirrored,
+    random_rotations,
+    repaired,
+    rows,
+    single,
+    slightly_off,
+    too_far_off,
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 GARBAGE = (np.nan, np.inf, -np.inf, 1e300, -1e300, 1.1e9, 1e9, 0.0)
 NUMBERS, LENGTH, ANGLE, HANDED = range(4)
 """The places of the reasons."""
-
-
-def rows(matrix: Array) -> tuple[tuple[float, ...], ...]:
-    return tuple(map(tuple, matrix.tolist()))
 
 
 def on_plain_numbers(matrix: Array) -> Array | None:
@@ -46,7 +52,6 @@ def in_the_reference(matrices: Array) -> tuple[Array, list[str]]:
 @settings(max_examples=20)
 @given(seed=SEEDS)
 def test_an_exact_rotation_is_used_bit_for_bit(seed: int) -> None:
-    """The repair leaves a rotation that is exact to 1e-12 unchanged."""
     rotation = random_rotations(1, seed)[0]
     matrices = np.array(
         [rotation, rotation + 1e-13, rotation[:, [1, 2, 0]], np.eye(3)[[1, 2, 0]], np.diag([-1.0, 1.0, -1.0])]
@@ -115,7 +120,6 @@ def test_what_is_no_rotation_is_refused_and_the_reason_has_the_amount(seed: int)
 
 
 def test_the_reason_in_words() -> None:
-    """The message of a refused rotation holds the amount and the possible cause."""
     matrix = np.eye(3) * np.sqrt(1.0021)
     refused = made_rotation(rows(matrix))
     assert isinstance(refused, Diagnosis)
@@ -126,7 +130,6 @@ def test_the_reason_in_words() -> None:
 
 @given(seed=SEEDS, place=st.integers(0, 8), value=st.sampled_from(GARBAGE) | st.floats())
 def test_garbage_never_raises_and_harms_no_neighbour(seed: int, place: int, value: float) -> None:
-    """A matrix with garbage is refused without an exception, and the other rows of its batch are not affected."""
     rotation = random_rotations(1, seed)[0]
     matrix = rotation.copy()
     matrix.flat[place] = value

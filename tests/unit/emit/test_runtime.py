@@ -31,7 +31,6 @@ PRIMITIVES: dict[str, tuple[type[sp.Function], tuple[st.SearchStrategy[float], .
 @pytest.mark.parametrize("name", PRIMITIVES)
 @given(data=st.data())
 def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
-    """A primitive of the runtime has the value of the reference interpreter, on plain numbers and on arrays."""
     function, ranges = PRIMITIVES[name]
     arguments = [data.draw(r) for r in ranges]
     symbols = [real(f"argument_{i}") for i, _ in enumerate(arguments)]
@@ -44,14 +43,12 @@ def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
 
 
 def test_select_and_absolute() -> None:
-    """Choice and absolute value work row by row."""
     values = np.array([-1.0, 2.0])
     assert list(_array.select(values > 0.0, values, 7.0)) == [7.0, 2.0]
     assert list(_array.absolute(values)) == [1.0, 2.0]
 
 
 def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
-    """The status of a row is that of its first condition that fails, and NaN fails every condition."""
     values = np.array([0.0, 1.0, 5.0, math.nan])
     status = _array.passed((values,))
     _array.require(status, values <= 2.0, Status.UNREACHABLE)
@@ -60,7 +57,6 @@ def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
 
 
 def test_elsewhere_computes_in_the_other_rows_alone() -> None:
-    """`elsewhere` evaluates the other function only in rows where the condition fails."""
     values, asked = np.array([1.0, 2.0, 3.0]), []
 
     def other(given: np.ndarray, number: float) -> tuple[np.ndarray, float]:
@@ -75,7 +71,6 @@ def test_elsewhere_computes_in_the_other_rows_alone() -> None:
 
 
 def test_a_choice_that_all_rows_share_copies_nothing() -> None:
-    """A choice with one condition for all rows returns the chosen array itself."""
     values = np.array([1.0, 2.0])
     assert _array.select(values > 0.0, values, 7.0) is values
     assert _array.select(False, values, 7.0) == 7.0
@@ -95,7 +90,6 @@ def drawn(data: st.DataObject, name: str) -> np.ndarray | float:
 
 
 def test_statuses_are_there_for_all_that_is_given_together() -> None:
-    """The array of statuses has the common shape of the arguments."""
     column, sign, other = np.zeros(3), np.array([[1], [-1]]), np.array([[[1]], [[-1]]])
     assert _array.passed((column, 1.0, column)).shape == (3,)
     assert _array.passed((column, 1.0), (), (sign, 1)).shape == (2, 3)
@@ -105,7 +99,6 @@ def test_statuses_are_there_for_all_that_is_given_together() -> None:
 
 @given(st.data())
 def test_every_slot_of_a_row_keeps_its_first_failure(data: st.DataObject) -> None:
-    """Conditions of any shape, one after the other, against the same conditions slot by slot."""
     status, expected = np.zeros((2, 2, 3), np.uint8), np.zeros((2, 2, 3), np.uint8)
     for otherwise in (Status.UNREACHABLE, Status.IMPOSSIBLE, Status.UNREACHABLE):
         condition = np.asarray(drawn(data, otherwise.name) > np.asarray(-4.0))
@@ -117,7 +110,6 @@ def test_every_slot_of_a_row_keeps_its_first_failure(data: st.DataObject) -> Non
 
 
 def test_numbers_of_reasonable_size() -> None:
-    """NaN, infinite and too large numbers are not reasonable, row by row."""
     rows, slots = np.array([1e9, -1e9, 1.1e9, math.nan, -math.inf]), np.array([[0.0], [-2e9]])
     assert _array.reasonable(rows[:2], 5.0, np.zeros((2, 1))) is True
     assert np.asarray(_array.reasonable(rows, 5.0)).tolist() == [True, True, False, False, False]
@@ -128,7 +120,6 @@ def test_numbers_of_reasonable_size() -> None:
 
 @given(st.data())
 def test_values_of_any_shapes_are_chosen_together(data: st.DataObject) -> None:
-    """A condition, what holds, and what is given elsewhere: each may be the same for rows or for signs, or for all."""
     level, first, second, a, b = (drawn(data, name) for name in ("level", "first", "second", "a", "b"))
     condition = np.greater(level, -3.0) if isinstance(level, np.ndarray) else level > -3.0
 
@@ -147,7 +138,6 @@ def test_values_of_any_shapes_are_chosen_together(data: st.DataObject) -> None:
 
 @given(st.data())
 def test_systems_of_any_shapes_are_solved_together(data: st.DataObject) -> None:
-    """Systems of equations with entries of any shapes are solved in their common shape."""
     entries = [drawn(data, name) for name in ("m11", "m12", "m21", "m22", "right")]
     m11, m12, m21, m22, right = entries
     determinant, x, y = _array.solve(((m11, m12), (m21, m22)), ((right,), (1.0,)))
@@ -161,7 +151,6 @@ def test_systems_of_any_shapes_are_solved_together(data: st.DataObject) -> None:
 
 
 def test_slots_that_are_done_keep_their_state() -> None:
-    """Slots of an iteration that are done keep their state while others go on."""
     done, status = np.array([[True], [False]]), np.zeros((2, 3), np.uint8)
     assert not _array.settled(done, status)
     state = _array.advanced(done, (1.0, np.array([1.0, 2.0, 3.0])), (np.array([5.0, 6.0, 7.0]), 8.0))

@@ -11,7 +11,6 @@ SENTENCES = st.lists(st.text("abcdefgh", min_size=1, max_size=12), max_size=30).
 
 @given(st.integers(1, 60), SENTENCES)
 def test_a_comment_beside_a_declaration_is_whole_and_fits(length: int, comment: str) -> None:
-    """A comment beside a declaration is complete, and no line is too long."""
     declaration = "d" * length
     lines = beside(declaration, comment)
     assert lines[0].startswith(declaration)
@@ -27,7 +26,6 @@ def test_a_long_declaration_still_has_its_comment() -> None:
 
 @pytest.mark.parametrize(("length", "lines"), [(10, 1), (90, 2), (98, 3)])
 def test_a_text_of_a_case_stands_where_there_is_room(length: int, lines: int) -> None:
-    """A text in a CASE moves to its own line where the label leaves no room."""
     found = case(12, "Diagnose", "x" * length)
     assert len(found) == lines
     assert "".join(line.strip() for line in found).replace(" ", "") == f"12:Diagnose:='{'x' * length}';"

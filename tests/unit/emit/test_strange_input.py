@@ -117,7 +117,6 @@ def raised(call: Callable[..., object], *arguments: object) -> KinematicsError |
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_the_error_has_the_diagnosis(mechanism: Mechanism) -> None:
-    """The error of a refused inverse has the diagnosis that `diagnose` returns."""
     robot = nominal(mechanism)
     rng = np.random.default_rng(7)
     size = sum(abs(p.nominal) for p in mechanism.parameters if p.unit == "u") + 100.0
@@ -143,7 +142,6 @@ def texts_in_the_inverse(robot: softkin.Mechanism) -> list[str]:
 
 
 def test_beyond_a_limit_it_says_which_turn_is_inside() -> None:
-    """The error of an axis beyond its limit names the turn that is inside, and the missing amount."""
     robot = softkin.Scara2Z(**LENGTHS, lower_a1=-10.0, upper_a1=400.0)
     frame, configuration = robot.forward((-30.0, 40.0, 0.0))
     error = raised(robot.inverse, frame, configuration)
@@ -170,7 +168,6 @@ def test_the_rods_of_a_scissor() -> None:
 
 
 def test_a_coupled_pair_names_the_part() -> None:
-    """The reason of a coupled pair names the part that refuses."""
     robot = softkin.Coupled(softkin.Scara2Z(**LENGTHS), softkin.CAxis(lower_c=-90.0, upper_c=90.0))
     far = (520.0, 0.0, 0.0), NO_TURN
     error = raised(robot.inverse, far)
@@ -180,7 +177,6 @@ def test_a_coupled_pair_names_the_part() -> None:
 
 
 def test_an_error_travels_whole() -> None:
-    """Pickling an error keeps its status, its message and its refusal."""
     error = raised(softkin.Scara2Z(**LENGTHS).inverse, ((600.0, 0.0, 0.0), NO_TURN))
     copy = pickle.loads(pickle.dumps(error))
     assert isinstance(error, softkin.KinematicsError)
@@ -240,7 +236,6 @@ def _text(seed: str) -> str:
 
 @pytest.mark.slow
 def test_the_text_does_not_depend_on_the_hash_seed() -> None:
-    """Generated text and pages are the same for two hash seeds of Python."""
     first = _text("0")
     assert len(first) > 100_000 and "spanUpperX" in first
     assert _text("90210") == first

@@ -54,7 +54,6 @@ def _around(robot: Mechanism) -> np.ndarray:
 
 
 def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, ...]) -> tuple[object, ...]:
-    """The slots, one branch after the other."""
     position, rotation = robot._pose(frame)  # type: ignore[arg-type]
     return Mechanism._every_branch(robot, position, rotation, reference)
 
@@ -63,7 +62,6 @@ def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, 
 @pytest.mark.parametrize("limit", [None, 120.0, 330.0], ids=["no limits", "limits", "more than a turn"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
-    """`inverse_all` gives in every slot the answer of one branch alone."""
     robot = robot_of(description, limit)
     frames, references = samples(robot, 12 if description.search is not None else 24)
     answers = 0
@@ -149,7 +147,6 @@ def check_same(description: Description, robot: Mechanism, found: tuple[float, .
 @pytest.mark.long("Ac6")
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
 def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
-    """A batch of all branches gives the axes and statuses of single calls."""
     robot = robot_of(description, 120.0)
     frames, references = samples(robot, 12 if description.search is not None else 24)
     positions, rotations = np.array([f[0] for f in frames]), np.array([f[1] for f in frames])
@@ -215,7 +212,6 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
 def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
-    """The fast functions of a machine can be pickled and give the same axes."""
     robot = robot_of(next(d for d in DESCRIPTIONS if d.name == name))
     (_, frame), _ = samples(robot, 2)  # the first is out of reach
     plain, signs, zeros = (tuple(frame[0]), frame[1]), (1.0,) * robot.BRANCHES, (0.0,) * 6
@@ -229,7 +225,6 @@ def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
 @pytest.mark.parametrize("name", ["Kin_Ac6_ThreeParallel", "Kin_ArticulatedRobot_6DOF"])
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e300, 1e154])
 def test_trusted_calls_do_not_raise_for_what_is_no_pose(name: str, value: float) -> None:
-    """The fast functions raise no exception for NaN and infinite positions."""
     robot = robot_of(next(d for d in DESCRIPTIONS if d.name == name))
     for place in range(3):
         position = tuple(value if i == place else 300.0 for i in range(3))
@@ -237,7 +232,6 @@ def test_trusted_calls_do_not_raise_for_what_is_no_pose(name: str, value: float)
 
 
 def test_the_solutions_are_as_a_tuple_of_them() -> None:
-    """The lazy sequence of solutions equals the tuple of its solutions, prints like it, and pickles to it."""
     robot = robot_of(next(d for d in DESCRIPTIONS if d.name == "Kin_ArticulatedRobot_6DOF"))
     (frame,), _ = samples(robot, 1)
     found = robot.inverse_all(frame)

@@ -163,7 +163,6 @@ class Choices:
 
 
 def turned_by(axis: int, cosine: sp.Expr, sine: sp.Expr) -> Factor:
-    """A turn; a right angle is one."""
     angle = float(np.arctan2(float(sine), float(cosine)))
     quarters = round(angle / (np.pi / 2))
     is_right = abs(angle - quarters * np.pi / 2) < _EXACT
@@ -255,7 +254,6 @@ def _written(row: Row, choices: Choices, is_modified: bool) -> Iterator[Factor]:
 
 
 def _with_z(direction: Array) -> Array:
-    """An orientation with this z."""
     x = sp.Matrix(_ONE[int(np.argmin(np.abs(direction.astype(float))))]).cross(sp.Matrix(direction))
     x /= x.norm()
     y = sp.Matrix(direction).cross(x)

@@ -62,23 +62,6 @@ def test_the_form_is_its_own_form(name: str) -> None:
     assert in_words(with_normal_chain(form).chain) == in_words(form.chain)
 
 
-ALIKE = (
-    "ball wrist, shoulder beside", "three parallel", "wrist with an offset along its second turn",
-    "wrist inclined by 60 degrees", "Stanford, with named lengths", "SCARA that hangs", "palletizer",
-    "five axes, nutating head", "arm on a rail",
-)  # fmt: skip
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ALIKE)
-def test_other_words_derive_alike(name: str) -> None:
-    """The programs are the same, to the last operation."""
-    mechanism = CHAINS[name]
-    other = replace(mechanism, chain=reworded(mechanism, 41))
-    built, again = (build(validate(m)) for m in (mechanism, other))
-    assert again.programs == built.programs
-
-
 def formed(chain: Chain, *, turning: Mechanism = CHAINS["SCARA"]) -> str:
     """The form of the chain of a machine, in words."""
     return in_words(with_normal_chain(replace(turning, joints=(*SIX, P1), chain=chain)).chain)
@@ -118,7 +101,6 @@ FORMS = {
 
 @pytest.mark.parametrize("kind", FORMS)
 def test_forms(kind: str) -> None:
-    """What the form looks like."""
     machine, chain, words = FORMS[kind]
     assert formed(chain, turning=machine) == words
 

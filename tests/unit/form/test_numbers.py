@@ -70,7 +70,6 @@ XYZ = Task("xyz")
 
 
 def described(chain: Chain, joints: tuple[Joint, ...], task: Task = XYZ, **stated: object) -> Mechanism:
-    """A mechanism with a chain."""
     return invented(joints=joints, chain=chain, task=task, **stated)
 
 

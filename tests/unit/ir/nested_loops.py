@@ -143,7 +143,6 @@ def in_arrays(name: str) -> Answers:
 
 
 def made_of(prefix: str, given: str, body: Callable[[Method], list[str]], names: Mapping[str, Any]) -> Any:
-    """An object with the methods of the programs."""
     lines = ["class Nested:", *indented(["constants = _constants = known"])]
     for name, program in PROGRAMS.items():
         result = tuple(o.name for o in program.outputs)

@@ -35,7 +35,6 @@ def square_root(limit: int = 20) -> Program:
 
 
 def test_every_row_iterates_until_it_is_done() -> None:
-    """Every row iterates until it converges, or is refused after the most passes."""
     values = np.array([1.0, 2.0, 1e15, -1.0, np.nan])
     outputs, status = run(square_root(), {"a": values})
     assert list(status) == [Status.OK] * 2 + [Status.IMPOSSIBLE] * 3  # 1e15 is too far away
@@ -43,7 +42,6 @@ def test_every_row_iterates_until_it_is_done() -> None:
 
 
 def test_a_row_gets_the_same_answer_in_any_company() -> None:
-    """The result of a row does not depend on the other rows."""
     values = np.array([1.0, 2.0, 50.0, -1.0])
     together, _ = run(square_root(), {"a": values})
     for i, value in enumerate(values):
@@ -52,7 +50,6 @@ def test_a_row_gets_the_same_answer_in_any_company() -> None:
 
 
 def test_a_status_that_was_there_first_stays() -> None:
-    """A row that was refused before the iteration keeps its status."""
     program = square_root()
     guarded = verify(replace(program, body=(Require(sp.Gt(A, 0), Status.BAD_INPUT), *program.body)))
     _, status = run(guarded, {"a": np.array([-1.0, 4.0])})
@@ -60,7 +57,6 @@ def test_a_status_that_was_there_first_stays() -> None:
 
 
 def test_the_limit_counts_passes() -> None:
-    """The limit of an iteration is the number of its passes."""
     assert run(square_root(1), {"a": np.array(1.0)})[1] == Status.OK
     assert run(square_root(1), {"a": np.array(2.0)})[1] == Status.IMPOSSIBLE
 
@@ -77,7 +73,6 @@ def test_passes_see_into_a_loop() -> None:
 
 
 def test_the_verifier_refuses() -> None:
-    """An iteration with wrong names, counts or equations is refused."""
     (loop,) = square_root().body
     assert isinstance(loop, Iterate)
     two = replace(loop, state=(X, Y), start=(A, A), following=(X + STEP, X))
@@ -102,7 +97,6 @@ def systems(size: int, columns: int, count: int) -> tuple[np.ndarray, np.ndarray
 
 @pytest.mark.parametrize(("size", "columns"), [(1, 1), (2, 3), (3, 0), (6, 1), (6, 6)])
 def test_systems_in_every_language(size: int, columns: int) -> None:
-    """Linear systems have the determinant and the solution of NumPy, and zeros where they are singular."""
     matrix, right = systems(size, columns, 42)
     determinant, solution = solve(matrix, right)
     singular = np.arange(42) % 7 == 0 if size > 1 else np.abs(matrix[0, 0]) == 0
@@ -124,7 +118,6 @@ def test_systems_in_every_language(size: int, columns: int) -> None:
 
 
 def controller(rows: list[list[float]], sides: list[list[float]]) -> tuple[float, list[float]]:
-    """Softkin_Solve, with its arrays of six by six."""
     matrix, right = [np.nan] * 36, [np.nan] * 36
     for i, (row, side) in enumerate(zip(rows, sides, strict=True)):
         matrix[6 * i : 6 * i + len(row)] = row
@@ -146,7 +139,6 @@ def caller(name: str = "caller", given: sp.Expr = C, outputs: tuple[sp.Symbol, .
 
 
 def test_it_binds_what_the_shared_program_answers() -> None:
-    """A call binds the outputs of the shared program, or passes on its status."""
     values = {"c": np.array([3.0, 6.0, -3.0, np.nan]), "q": np.array(4.0), "k": np.array(2.0)}
     outputs, status = run(caller(), values)
     assert list(status) == [Status.OK, Status.UNREACHABLE, Status.IMPOSSIBLE, Status.IMPOSSIBLE]
@@ -176,7 +168,6 @@ def test_the_names_inside_are_its_own() -> None:
 
 
 def test_it_reads_arguments_and_constants() -> None:
-    """A call reads its arguments, and the constants of the shared program."""
     program = caller()
     (call, *_) = program.body
     assert isinstance(call, Call) and call.constants == (K,) and call.arguments == (C, Q)
@@ -184,7 +175,6 @@ def test_it_reads_arguments_and_constants() -> None:
 
 
 def test_only_what_is_read_is_bound() -> None:
-    """A call binds only the results that something reads, and stays for its status where nothing reads any."""
     for outputs, bound in (((Y,), (X, Y)), ((), (X,))):
         call = caller(outputs=outputs).body[0]
         assert call.bound() == bound  # the condition reads x
@@ -194,7 +184,6 @@ def test_only_what_is_read_is_bound() -> None:
 
 
 def test_an_alias_is_folded_into_the_arguments() -> None:
-    """An argument that is a name for another name is replaced by that name."""
     call = Call(hypotenuse(), ((A, W), (B, Q)), (X, Y))
     program = normalise("p", (Let(W, C), call), [Output("y", Y)])
     assert [type(s) for s in program.body] == [Call]

@@ -35,7 +35,6 @@ def test_what_a_program_reads_is_what_it_does_not_bind() -> None:
 
 
 def test_its_parts_in_order() -> None:
-    """The values and the conditions of a program are listed in their order."""
     assert [let.name for let in SAMPLE.lets()] == [A, B]
     assert [r.otherwise for r in SAMPLE.requires()] == [Status.UNREACHABLE]
 
@@ -46,7 +45,6 @@ def test_a_choice_between_equals_is_none() -> None:
 
 
 def test_statuses_are_enumerators_of_the_controller() -> None:
-    """Every status is a different error of SoftMotion."""
     assert len({s.value for s in Status}) == len(Status) == 6
     assert all(s.value.startswith("SMC_") for s in Status)
 
@@ -82,7 +80,6 @@ def test_equal_terms_are_counted_and_opposite_ones_cancel(graph: Graph) -> None:
 
 
 def test_numbers_are_put_together(graph: Graph) -> None:
-    """Numbers in sums and products are combined."""
     x, two, three = leaf(graph, X), graph.leaf(sp.Integer(2)), graph.leaf(sp.Integer(-3))
     assert graph.sum([two, x, three]) == graph.sum([x, graph.leaf(sp.Integer(-1))])
     assert graph.product([two, x, three]) == -graph.product([graph.leaf(sp.Integer(6)), x])
@@ -90,7 +87,6 @@ def test_numbers_are_put_together(graph: Graph) -> None:
 
 
 def test_a_cosine_does_not_know_the_sign_of_its_angle(graph: Graph) -> None:
-    """Cosines of opposite angles are one node, and sines differ by a sign."""
     x = leaf(graph, X)
     assert graph.apply(sp.cos, [-x]) == graph.apply(sp.cos, [x])
     assert graph.apply(sp.sin, [-x]) == -graph.apply(sp.sin, [x])

@@ -30,20 +30,17 @@ def value(expression: sp.Basic, **numbers: float) -> float:
 
 @pytest.mark.parametrize("x, root", [(4.0, 2.0), (0.0, 0.0), (-1e-300, 0.0), (-9.0, 0.0), (1e18, 1e9)])
 def test_root(x: float, root: float) -> None:
-    """The root of a negative number is 0."""
     assert value(Root(X), x=x) == root
 
 
 @pytest.mark.parametrize("y", [-1.0, -0.0, 0.0, 2.0])
 @pytest.mark.parametrize("x", [-3.0, -0.0, 0.0, 1.0])
 def test_atan2_is_exact_in_all_quadrants_and_knows_no_negative_zero(y: float, x: float) -> None:
-    """`Atan2` is exact in all quadrants, and ignores the sign of a zero."""
     assert value(Atan2(Y, X), y=y, x=x) == atan2(y + 0.0, x + 0.0)
     assert -pi < value(Atan2(Y, X), y=y, x=x) <= pi
 
 
 def test_select_evaluates_both_and_takes_one() -> None:
-    """A choice takes the side of its condition, whatever the other side is."""
     choice = Select(sp.Gt(X, 0), 1 / X, Y)
     with np.errstate(divide="ignore"):
         assert value(choice, x=2.0, y=7.0) == 0.5
@@ -52,7 +49,6 @@ def test_select_evaluates_both_and_takes_one() -> None:
 
 
 def test_arithmetic_and_logic() -> None:
-    """Arithmetic, comparisons and logic have their usual values, row by row."""
     assert value(X**-2 * 3 + sp.Rational(1, 4) - sp.Abs(Y), x=2.0, y=-5.0) == -4.0
     assert value(sp.cos(X * DEGREE) + sp.sin(Y * DEGREE), x=60.0, y=30.0) == pytest.approx(1.0)
     both, either = sp.And(sp.Ge(X, 1), sp.Lt(X, 2)), sp.Or(sp.Gt(X, 5), sp.Le(X, 0))
@@ -68,7 +64,6 @@ TURNS = st.floats(-1e5, 1e5)
 @pytest.mark.long
 @given(angle=TURNS, centre=TURNS)
 def test_nearest_period(angle: float, centre: float) -> None:
-    """The nearest period differs by whole turns, and is within half a turn of the centre."""
     found = float(nearest_period(np.asarray(angle), np.asarray(centre)))
     turns = (found - angle) / 360
     assert abs(turns - round(turns)) <= 1e-11
@@ -101,7 +96,6 @@ def test_the_commanded_period_brings_an_axis_back(axis: float) -> None:
 
 @pytest.mark.parametrize("edge", [-900.0, -540.0, -180.0, 180.0, 540.0, 900.0])
 def test_the_period_of_an_edge_is_stable(edge: float) -> None:
-    """Values within rounding of an edge belong to the same turn."""
     for axis in (edge, nextafter(edge, -INFINITY), nextafter(edge, INFINITY), edge - 4e-10, edge + 4e-10):
         turns = int(np.floor((axis + 180 + 1e-9) / 360))
         assert turns == (edge + 180) / 360
@@ -117,7 +111,6 @@ HALVES = st.one_of(st.floats(0.0, pi), st.sampled_from([0.0, pi / 2, pi]))
 @pytest.mark.long
 @given(angle=st.floats(-50, 50), centre=st.floats(-50, 50), half=HALVES)
 def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
-    """The nearest angle of an arc is on the arc, and no other angle of the arc is nearer."""
     found = float(nearest_on_arc(*(np.asarray(v) for v in (angle, centre, half))))
     assert abs(found - centre) <= half + 1e-13
     off = distance(angle, centre)
@@ -153,13 +146,11 @@ def test_the_first_failing_condition_gives_the_status() -> None:
     ids=str,
 )
 def test_garbage_fails_positive_conditions(garbage: float, condition: sp.Basic) -> None:
-    """NaN and infinite numbers fail every condition that is written positively."""
     _, status = run(Program("p", (X,), (Require(condition, Status.BAD_INPUT),), ()), {"x": np.asarray(garbage)})
     assert status.item() is Status.BAD_INPUT
 
 
 def test_scalars_and_arrays_go_together() -> None:
-    """Inputs may be plain numbers and arrays, and the outputs have their common shape."""
     program = Program("p", (X, Y), (Let(Z, X * 2),), (Output("sum", Z + Y), Output("one", sp.Integer(1))))
     outputs, status = run(program, {"x": np.asarray(3.0), "y": np.arange(4.0)})
     assert list(outputs["sum"]) == [6.0, 7.0, 8.0, 9.0]
@@ -167,7 +158,6 @@ def test_scalars_and_arrays_go_together() -> None:
 
 
 def test_a_program_without_inputs() -> None:
-    """A program without inputs gives its constant outputs and the status OK."""
     outputs, status = run(Program("p", (), (), (Output("one", sp.Integer(1)),)), {})
     assert outputs["one"] == 1.0
     assert status.item() is Status.OK
@@ -182,7 +172,6 @@ def refusing(amount: sp.Expr, condition: sp.Basic = POSITIVE) -> Require:
 
 
 def amount_of(program: Program) -> sp.Expr | None:
-    """The amount of the only reason."""
     (require,) = program.requires()
     assert require.reason is not None
     return require.reason.amount
@@ -210,7 +199,6 @@ def test_what_is_bound_behind_the_refusal_is_written_out() -> None:
 
 
 def test_aliases_are_folded_in_amounts() -> None:
-    """A name for another name is replaced in amounts, too."""
     assert amount_of(normalise("p", [Let(B, X), refusing(B + Y)], OUT)) == X + Y
 
 
@@ -233,7 +221,6 @@ def test_a_name_that_an_amount_reads_is_an_input() -> None:
 
 
 def test_an_amount_of_nothing_is_found() -> None:
-    """An amount that reads a value before it is bound is refused."""
     with pytest.raises(BrokenProgram, match="'y' is read before it is bound"):
         with_inputs(Program("p", (), (refusing(Y), Let(Y, X)), ()))
 
@@ -246,7 +233,6 @@ def test_every_expression_of_a_reason_is_rewritten() -> None:
 
 
 def test_who_is_told_nothing_computes_nothing() -> None:
-    """Without reasons a program neither computes amounts nor reads their inputs."""
     program = without_reasons(normalise("p", [Let(B, Select(sp.Gt(Y, 0), Y, X)), refusing(B)], OUT))
     assert amount_of(program) is None
     assert program.inputs == (X,)
@@ -255,14 +241,12 @@ def test_who_is_told_nothing_computes_nothing() -> None:
 
 
 def test_the_reader_is_told_the_reason_or_the_note() -> None:
-    """The comment of a condition is its note, else its reason."""
     assert refusing(X).comment == "a: out of reach"
     assert replace(refusing(X), note="limits of A").comment == "limits of A"
     assert Let(A, X, "by the sum", turn_of="A1").comment == "by the sum; A1: whole turns added"
 
 
 def test_every_sentence_takes_one_name() -> None:
-    """Every sentence of a reason has at most one place for a name."""
     for why in Why:
         assert why.value.count("{}") <= 1
         assert about("NAME", why).words.count("NAME") == why.value.count("{}")

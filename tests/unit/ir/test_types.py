@@ -49,7 +49,6 @@ def test_every_expression_has_a_type(value: sp.Basic, expected: Type) -> None:
     ],
 )  # fmt: skip
 def test_mixtures_are_refused(value: sp.Basic) -> None:
-    """An expression that mixes types is refused."""
     with pytest.raises(IllTypedError):
         type_of(value)
 
@@ -80,7 +79,6 @@ NAMES = (flag("is_far"), real("twice"), count("next"))
     ],
 )  # fmt: skip
 def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
-    """A statement whose value has the type of its name is accepted."""
     verify(_program(statement))
 
 
@@ -98,7 +96,6 @@ def test_values_of_the_type_of_their_names_pass(statement: Statement) -> None:
     ],
 )  # fmt: skip
 def test_values_of_another_type_are_refused(statement: Statement) -> None:
-    """A statement whose value has another type than its name is refused."""
     with pytest.raises(BrokenProgram):
         verify(_program(statement))
 
@@ -111,7 +108,6 @@ def test_a_name_that_is_read_as_another_type_is_refused() -> None:
 
 
 def test_normalising_keeps_types_and_drops_what_else_is_known() -> None:
-    """The normal form of a program keeps the types of names, and drops all other assumptions."""
     length = sp.Symbol("length", positive=True)
     program = normalise(
         "p", [Let(A, length > 1), Let(X, Select(A, ToReal(N), length))], [Output("o", X), Output("n", N)]
@@ -122,7 +118,6 @@ def test_normalising_keeps_types_and_drops_what_else_is_known() -> None:
 
 
 def test_programs_run_in_their_types() -> None:
-    """Outputs have the type of their expression: bool, int or float."""
     outputs = [Output("f", A), Output("k", N + 1), Output("v", Select(A, ToReal(N) / 2, X))]
     values, _ = run(
         _program(outputs=tuple(outputs)), {"a": [0, 1], "b": 0, "n": [3.0, 4.0], "m": 0, "x": 0.25, "y": 0.0}
@@ -150,7 +145,6 @@ ANGLES = {Q: Type.ANGLE, R: Type.ANGLE, real("h"): Type.HEADING}
     ],
 )  # fmt: skip
 def test_angles_are_added_and_asked_for_sines(value: sp.Basic, expected: Type) -> None:
-    """Sums of angles are angles, and their sines are real numbers."""
     assert type_of(value, ANGLES) is expected
 
 
@@ -197,7 +191,6 @@ def test_a_loop_may_turn_and_a_call_answers_with_angles() -> None:
 
 
 def test_wrap_is_the_angle_of_a_direction() -> None:
-    """`wrap` gives the angle in (-pi, pi]."""
     angles = np.array([-3.5 * np.pi, -np.pi, -3.0, -1e-9, 0.0, 1.0, np.pi, np.pi + 0.5, 9.0, 40.0])
     values, _ = run(
         _program(outputs=(Output("w", Wrap(X)),)), {n: angles if n == "x" else np.zeros(10) for n in "abnmxy"}
@@ -266,7 +259,6 @@ def test_a_pivot_that_is_zero_in_every_step() -> None:
 
 
 def test_the_sizes_of_numbers_that_are_solved() -> None:
-    """Systems with very small and very large entries are solved up to the limits of size."""
     wanted = np.linalg.solve(REGULAR, SIDES)
     for size in (3e-31, 2e29):
         for determinant, solution in answers(REGULAR * size, SIDES):

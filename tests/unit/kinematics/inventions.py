@@ -1,11 +1,6 @@
-"""Mechanisms for which the derivation was not tuned, each with its forward kinematics written by hand."""
+"""Mechanisms for which the derivation was not tuned."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-
-import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 from sympy import cos, sin
 
 from derive.description.mechanism import (
@@ -31,10 +26,6 @@ from derive.description.mechanism import (
 from derive.geometry.frames import Chain, Rz, Tx, Txyz, Ty, Tz, flip_x
 from tests.machines.textbook import read_by
 
-Array = NDArray[np.float64]
-Hand = Callable[[Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]
-"""Parameters and joint values (radians, lengths) → x + iy, z, turn about z."""
-
 L1 = length("link_1", "first link", nominal=300.0)
 L2 = length("link_2", "second link", nominal=200.0)
 L3 = optional_length("link_3", "third link", nominal=70.0)
@@ -49,25 +40,12 @@ FOLLOWED = Turning.ABOUT_Z
 ELBOW = branch("elbow", sin(A2), right=+1, left=-1)
 
 
-@dataclass(frozen=True)
-class Invention:
-    """A description with its forward kinematics."""
-
-    mechanism: Mechanism
-    hand: Hand
-
-
-def invention(hand: Hand, **description: object) -> Invention:
+def described(**description: object) -> Mechanism:
     """A description: the joints and the parameters of a chain that are not stated are those that it reads."""
     details = {"name": "Kin_Invented", "vendor": Vendor.TEXTBOOK, "family": "test", "source": "none", "summary": "none"}
     chain = description.get("chain")
     read = read_by(chain, STOCK) if isinstance(chain, Chain) else {}
-    return Invention(Mechanism(**{**details, **read, **description}), hand)  # type: ignore[arg-type]
-
-
-def described(**description: object) -> Mechanism:
-    """The same of a description that nobody compares with forward kinematics by hand."""
-    return invention(lambda p, q: (p["x"], p["x"], p["x"]), **description).mechanism
+    return Mechanism(**{**details, **read, **description})  # type: ignore[arg-type]
 
 
 def planar_arm(**changes: object) -> Mechanism:
@@ -83,151 +61,92 @@ def planar_arm(**changes: object) -> Mechanism:
     return described(**{**stated, **changes})
 
 
-def e(angle: Array) -> Array:
-    """The unit vector of an angle, as a complex number."""
-    return np.exp(1j * angle)
-
-
-def rrr(p: Mapping[str, Array], first: Array, second: Array, third: Array) -> Array:
-    """The tip of three links with absolute angles."""
-    return p["link_1"] * e(first) + p["link_2"] * e(second) + p["link_3"] * e(third)
-
-
 def links(*turns: object, last: Parameter = L3) -> Chain:
     """Turns about z with the three links behind them."""
     first, second, third = turns
     return Rz(first) * Tx(L1) * Rz(second) * Tx(L2) * Rz(third) * Tx(last)
 
 
-THREE = (L1, L2, L3)
 SHOULDER = L1 * cos(A2) + L2 * cos(A2 + A3)
 RADIUS = P1 + L1
 
 INVENTIONS = {
-    "a lift between the joints": invention(
-        lambda p, q: (
-            rrr(p, q["A1"], q["A1"] + q["A2"], q["A1"] + q["A2"] + q["A3"]),
-            q["P1"],
-            q["A1"] + q["A2"] + q["A3"],
-        ),
+    "a lift between the joints": described(
         chain=Rz(A1) * Tz(P1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3) * Tx(L3),
         task=Task("xyz", FOLLOWED),
         branches=(ELBOW,),
         periods=("A3", "A1", "A2"),
     ),
-    "all turns clockwise": invention(
-        lambda p, q: (
-            rrr(p, -q["A1"], -q["A1"] - q["A2"], -q["A1"] - q["A2"] - q["A3"]),
-            0,
-            -q["A1"] - q["A2"] - q["A3"],
-        ),
+    "all turns clockwise": described(
         chain=links(-A1, -A2, -A3),
         task=Task("xy", FOLLOWED),
         branches=(branch("elbow", -sin(A2), right=+1, left=-1),),
     ),
-    "a base that stands aside, looking elsewhere": invention(
-        lambda p, q: (
-            100 - 50j + e(np.pi / 6) * rrr(p, q["A1"], q["A1"] + q["A2"], q["A1"] + q["A2"] + q["A3"]),
-            20 + q["P1"],
-            np.pi / 6 + q["A1"] + q["A2"] + q["A3"],
-        ),
+    "a base that stands aside, looking elsewhere": described(
         joints=(A1, A2, P1, A3),
         chain=Txyz(100, -50, 20) * Rz(sp.pi / 6) * Tz(P1) * links(A1, A2, A3) * flip_x(1),
         task=Task("xyz", FOLLOWED),
         branches=(ELBOW,),
     ),
-    "an arm on its side, crooked": invention(
-        lambda p, q: (
-            1j * p["link_1"] * e(q["A1"]) + (p["link_2"] + 1j * p["link_3"]) * e(q["A1"] + q["A2"]),
-            q["P1"],
-            0,
-        ),
+    "an arm on its side, crooked": described(
         chain=Rz(A1) * Ty(L1) * Rz(A2) * Tx(L2) * Ty(L3) * Tz(P1),
         task=Task("xyz"),
         branches=(branch("elbow", L3 * sin(A2) - L2 * cos(A2), right=+1, left=-1),),
     ),
-    "an arm on an oblique rail": invention(
-        lambda p, q: (
-            e(np.pi / 6) * (q["P1"] + p["link_1"] * e(q["A1"]) + p["link_3"] * e(q["A1"] + q["A2"])),
-            0,
-            np.pi / 6 + q["A1"] + q["A2"],
-        ),
+    "an arm on an oblique rail": described(
         chain=Rz(sp.pi / 6) * Tx(P1) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L3),
         task=Task("xy", FOLLOWED),
         branches=(branch("side", cos(A1), front=+1, back=-1),),
     ),
-    "a telescope with a wrist": invention(
-        lambda p, q: (q["P1"] * e(q["A1"]) + p["link_1"] * e(q["A1"] + q["A2"]), 0, q["A1"] + q["A2"]),
+    "a telescope with a wrist": described(
         chain=Rz(A1) * Tx(P1) * Rz(A2) * Tx(L1),
         task=Task("xy", FOLLOWED),
         branches=(branch("reach", P1, front=+1, back=-1),),
         offset_interface=False,
     ),
-    "a telescope on a column": invention(
-        lambda p, q: ((q["P1"] + p["link_1"]) * e(q["A1"]), q["P2"] - 5, 0),
+    "a telescope on a column": described(
         parameters=(L1,),
         joints=(A1, P2, P1),
         closure=(X - RADIUS * cos(A1), Y - RADIUS * sin(A1), Z - P2 + 5),
         task=Task("xyz"),
         positive=(RADIUS,),
     ),
-    "skewed belts": invention(
-        lambda p, q: ((2 * q["P1"] - q["P2"]) / 3 + 1j * (q["P1"] + q["P2"]) / 2, q["P3"] - q["P1"] / 4, 0),
+    "skewed belts": described(
         chain=Tx((2 * P1 - P2) / 3) * Ty((P1 + P2) / 2) * Tz(P3 - P1 / 4),
         task=Task("xyz"),
     ),
-    "belts geared by parameters": invention(
-        lambda p, q: (
-            p["link_1"] * q["P1"] - p["link_2"] * q["P2"] + 1j * (p["link_2"] * q["P1"] + p["link_1"] * q["P2"]),
-            0,
-            0,
-        ),
+    "belts geared by parameters": described(
         parameters=(L1, L2),
         joints=(P1, P2),
         closure=(X - L1 * P1 + L2 * P2, Y - L2 * P1 - L1 * P2),
         task=Task("xy"),
     ),
-    "an oblique slide": invention(
-        lambda p, q: (q["P1"] + e(np.pi / 3) * q["P2"], 0, 0), chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2), task=Task("xy")
-    ),
-    "clock angles": invention(
-        lambda p, q: (1j * (p["link_1"] * e(-q["A1"]) + p["link_2"] * e(-q["A2"])), 0, 0),
+    "an oblique slide": described(chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2), task=Task("xy")),
+    "clock angles": described(
         parameters=(L1, L2),
         joints=(A1, A2),
         closure=(X - L1 * sin(A1) - L2 * sin(A2), Y - L1 * cos(A1) - L2 * cos(A2)),
         task=Task("xy"),
         branches=(branch("elbow", sin(A2 - A1), right=+1, left=-1),),
     ),
-    "all motors in the base": invention(
-        lambda p, q: (rrr(p, q["A1"], q["A2"], q["A3"]), 0, q["A3"]),
+    "all motors in the base": described(
         chain=links(A1, A2 - A1, A3 - A2),
         task=Task("xy", FOLLOWED),
         branches=(branch("elbow", sin(A2 - A1), right=+1, left=-1),),
     ),
-    "a motor of either sense": invention(
-        lambda p, q: (
-            p["link_1"] * e(p["direction_a1"] * q["A1"]) + p["link_2"] * e(p["direction_a1"] * q["A1"] + q["A2"]),
-            0,
-            p["direction_a1"] * q["A1"] + q["A2"] + q["A3"],
-        ),
+    "a motor of either sense": described(
         chain=Rz(DIRECTION * A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3),
         task=Task("xy", FOLLOWED),
         branches=(ELBOW,),
     ),
-    "a palletiser": invention(
-        lambda p, q: (
-            (p["link_1"] * np.cos(q["A2"]) + p["link_2"] * np.cos(q["A2"] + q["A3"])) * e(q["A1"]),
-            p["link_1"] * np.sin(q["A2"]) + p["link_2"] * np.sin(q["A2"] + q["A3"]),
-            0,
-        ),
+    "a palletiser": described(
         parameters=(L1, L2),
         joints=(A1, A2, A3),
         closure=(X - cos(A1) * SHOULDER, Y - sin(A1) * SHOULDER, Z - L1 * sin(A2) - L2 * sin(A2 + A3)),
         task=Task("xyz"),
         branches=(branch("shoulder", SHOULDER, front=+1, back=-1), branch("elbow", sin(A3), down=+1, up=-1)),
     ),
-    "a boom that tips over": invention(
-        lambda p, q: (q["P1"] * np.cos(q["A2"]) * e(q["A1"]), p["link_1"] + q["P1"] * np.sin(q["A2"]), 0),
+    "a boom that tips over": described(
         parameters=(L1,),
         joints=(A1, A2, linear("P1", "boom", domain=(0.0, 1e9), nominal=100.0)),
         closure=(X - P1 * cos(A2) * cos(A1), Y - P1 * cos(A2) * sin(A1), Z - L1 - P1 * sin(A2)),
@@ -235,20 +154,14 @@ INVENTIONS = {
         positive=(P1,),
         branches=(branch("side", cos(A2), front=+1, back=-1),),
     ),
-    "a screw that lifts as the arm turns": invention(
-        lambda p, q: (
-            p["link_1"] * e(q["A1"]) + p["link_2"] * e(q["A1"] + q["A2"]),
-            q["P1"] + p["pitch_screw"] * q["A2"] / (2 * np.pi),
-            q["A1"] + q["A2"] + q["A4"],
-        ),
+    "a screw that lifts as the arm turns": described(
         joints=(A1, helical("A2", "carries the lift", limit_range=(-720.0, 720.0), pitch=PITCH), P1, A4),
         chain=Tz(P1 + PITCH * A2 / TURN) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A4),
         task=Task("xyz", FOLLOWED),
         branches=(ELBOW,),
         periods=("A1", "A2", "A4"),
     ),
-    "a coupled elbow": invention(
-        lambda p, q: (p["link_1"] * e(q["A1"]) + p["link_2"] * e(q["A1"] + q["A2"]), 0, 0),
+    "a coupled elbow": described(
         parameters=(L1, L2, K12),
         joints=(A1, rotary("A2", "driven through the shoulder", coupling=K12 * A1.motor)),
         chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),

@@ -45,7 +45,6 @@ class Machine:
     def inverse(
         self, pose: Mapping[str, Array], slot: Mapping[str, float | Array], reference: Mapping[str, Array]
     ) -> tuple[Values, NDArray[np.object_]]:
-        """One branch, periods nearest to the reference."""
         values: dict[str, Array | float] = {**pose, **slot}
         for joint in self.kinematics.mechanism.joints:
             values |= {joint.turn.name: 0.0, joint.reference.name: reference[joint.axis.name]}

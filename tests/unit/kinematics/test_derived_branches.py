@@ -155,13 +155,11 @@ def _feet(k: int) -> tuple[object, object, int]:
 
 
 def _loop(joints: Sequence[Joint], parameters: Sequence[Parameter], *rods: Rod, **more: Any) -> Mechanism:
-    """A loop in a plane, or in space."""
     task = Task("xy" if len(joints) == 2 else "xyz")
     return Mechanism("Loop", tuple(joints), task, parameters=tuple(parameters), rods=rods, **more)
 
 
 def _crank(joint: Joint) -> tuple[object, object]:
-    """The end of an arm."""
     return ARM * cos(joint), ARM * sin(joint)
 
 

@@ -32,7 +32,6 @@ def _all(kin: Kinematics) -> Iterator[tuple[Program, Statement]]:
 
 
 def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
-    """No program stores a truth value in a real number."""
     flags = {(sp.Integer(1), sp.Integer(0)), (sp.Integer(0), sp.Integer(1))}
     lets = [s for _, s in _all(kinematics) if isinstance(s, Let)]
     assert not [s for s in lets if isinstance(s.value, Select) and s.value.args[1:] in flags]
@@ -42,7 +41,6 @@ def test_no_real_is_one_or_zero_by_a_condition(kinematics: Kinematics) -> None:
 
 
 def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
-    """The setup program reads every parameter in its type."""
     inputs = {s.name: s for s in kinematics.setup.inputs}
     for parameter in kinematics.parameters:
         name = inputs[parameter.name]
@@ -61,7 +59,6 @@ def test_parameters_are_read_in_their_types(kinematics: Kinematics) -> None:
 
 @pytest.mark.long
 def test_a_search_and_its_loop_count_and_ask() -> None:
-    """The flags and counts of the search for a root are Booleans and integers."""
     kin = kinematics_of(named("Kin_Ac6_RZRYRYRXRYRZ_J6Offset"))
     (search,) = (p for p in kin.shared if p.name == "find_root")
     assert is_condition(search.outputs[0].value)

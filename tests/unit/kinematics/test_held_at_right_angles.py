@@ -10,6 +10,8 @@ from derive.ir.interpret import run
 from derive.ir.program import Status
 from derive.ir.symbols import branch_sign
 from derive.kinematics.build import build
+from derive.kinematics.search.choice import with_search
+from derive.kinematics.solution import prepared
 from derive.witness.onward import every_root
 from tests.unit.kinematics.test_elimination import commanded, poses_of
 from tests.unit.kinematics.test_refusals import J
@@ -29,7 +31,7 @@ def test_a_turn_by_a_held_joint_and_an_angle() -> None:
     arm = Mechanism(
         "Arm", parameters=(TWIST, TIP), joints=J[:7], chain=chain, task=Task("xyz", Turning.FULL), held=(A7,)
     )
-    search = build(validate(arm)).mechanism.search
+    search = with_search(prepared(validate(arm))).search
     assert search is not None and search.is_eliminated
 
 

@@ -47,7 +47,6 @@ def both(own: Range, drive: Range) -> tuple[dict[str, float], Status]:
 
 @given(own=st.none() | ranges, drive=drives)
 def test_it_is_what_both_allow(own: Range, drive: tuple[float, float]) -> None:
-    """The range of an axis is what the limits of machine and drive both allow."""
     largest = float(LARGEST)
     low = max(drive[0], own[0] if own else -largest)
     high = min(drive[1], own[1] if own else largest)
@@ -71,7 +70,6 @@ def test_it_does_not_matter_who_knows_them(limits: Range) -> None:
 @pytest.mark.long
 @given(lower=numbers, upper=numbers, own=st.none() | ranges)
 def test_no_range_is_refused(lower: float, upper: float, own: Range) -> None:
-    """Limits of a drive that are reversed, or no numbers, are refused."""
     assume(lower > upper)
     for drive in ((lower, upper), (NOT_A_NUMBER, upper), (lower, NOT_A_NUMBER), (math.inf, -math.inf)):
         assert both(own, drive)[1] is Status.BAD_INPUT
@@ -133,7 +131,6 @@ def test_a_rate_is_the_derivative(name: str) -> None:
 
 
 def test_a_given_rate_replaces_the_statement() -> None:
-    """What a name is bound to is not differentiated where its rate is given."""
     rates = Rates({A: SPEED}, Names(("time", "first", "third", "speed")))
     rates.through((Let(A, sp.sin(T)), Let(C, A**2)))
     assert rates.of(C) == real("rate_of_third")

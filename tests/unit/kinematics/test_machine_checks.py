@@ -42,7 +42,6 @@ def constants_asked(kin: Kinematics) -> list[Require]:
 
 
 def status(kin: Kinematics, **given: float) -> Status | None:
-    """What the set-up says to a machine."""
     inputs = {p.name: np.array([given.get(p.name, p.nominal)]) for p in kin.parameters}
     found: Status | None = run(kin.setup, inputs)[1][0]
     return found

@@ -14,19 +14,7 @@ import sympy as sp
 from sympy import cos
 
 from derive.description.catalogue import MECHANISMS, load
-from derive.description.mechanism import (
-    DescriptionError,
-    Joint,
-    Mechanism,
-    Parameter,
-    Task,
-    Turning,
-    X,
-    Y,
-    length,
-    linear,
-    rotary,
-)
+from derive.description.mechanism import DescriptionError, Mechanism, Parameter, Task, Turning, X, Y, length, rotary
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.faults import GenerationError
@@ -47,7 +35,7 @@ from derive.live import _refuse_another_runtime
 from derive.report import self_test
 from derive.solver import solve
 from derive.solver.solve import MOST_TERMS
-from derive.solver.unsolved import Exhausted, Unsolved
+from derive.solver.unsolved import Exhausted
 from derive.work import at_most
 from tests.unit.kinematics.inventions import A1, L1, L2, planar_arm
 
@@ -249,24 +237,6 @@ def test_the_stages_behind_the_solver_share_the_bound(monkeypatch: pytest.Monkey
     said = r"^the .* was given up after [\d,]+ terms, before an expression of [\d,]+ terms: state the dimensions"
     with pytest.raises(Exhausted, match=said):
         build(machine)
-
-
-def test_a_tool_beside_the_last_of_five_axes() -> None:
-    """Two slides beside three turns are not searched; what would help is told. Five turns are."""
-    x, y = linear("X", "carriage"), linear("Y", "quill")
-    with pytest.raises(Unsolved) as refusal:
-        chain = Tx(x) * Rz(J[1]) * Ty(50) * Ry(J[2]) * Tx(70) * Rx(J[3]) * Ty(80) * Tz(y) * Tx(30) * Ry(1)
-        build(pointing((x, *J[1:4], y), chain))
-    said = str(refusal.value)
-    assert "the axes of A2, A3, A4 met in one point, which they miss by 50" in said
-    assert 'with task=Task("xyz", Turning.NONE), held=(A4, Y) these joints are solved' in said
-    upper = Rz(J[0]) * Tz(310) * Ry(J[1]) * Tz(260) * Ry(J[2]) * Tx(230) * Ry(J[3]) * Tx(75)
-    assert build(pointing(J[:5], upper * Rx(J[4]) * Ty(35) * Tx(45))).mechanism.search is not None
-
-
-def pointing(joints: tuple[Joint, ...], chain: Chain) -> Mechanism:
-    """A machine whose direction is commanded."""
-    return validate(Mechanism(name="Five", joints=joints, chain=chain, task=Task("xyz", Turning.DIRECTION)))
 
 
 def test_the_amount_by_which_axes_nearly_meet() -> None:

@@ -20,7 +20,7 @@ from derive.solver.unsolved import Undetermined
 from derive.witness import witness
 from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
 from tests.machines.searched_machines import POINTING
-from tests.unit.kinematics.inventions import invention
+from tests.unit.kinematics.inventions import described
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
 pytestmark = pytest.mark.slow
@@ -35,19 +35,17 @@ SIDEWAYS = ARM * Ty(L[3]) * Ry(A5) * Rx(A6) * Tx(L[4])
 
 def arm(chain: Chain, *branches: object, parameters: tuple[Parameter, ...] = LENGTHS) -> Mechanism:
     read = {s for factor in chain.factors for s in factor.amount.free_symbols}
-    return invention(
-        lambda p, q: (p["l1"], p["l1"], p["l1"]),
+    return described(
         parameters=tuple(p for p in parameters if p.symbol in read),
         joints=JOINTS[:6],
         chain=chain,
         task=Task("xyz", Turning.FULL),
         branches=branches,
         offset_interface=False,
-    ).mechanism
+    )
 
 
 def chosen(mechanism: Mechanism) -> str | None:
-    """The name of the joint that is searched."""
     search = with_search(mechanism).search
     return None if search is None else search.joint.name
 

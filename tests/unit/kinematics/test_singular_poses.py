@@ -12,7 +12,7 @@ REFERENCES = (-400.0, -37.0, 0.0, 200.0)
 
 
 def built(name: str, **settings: float) -> Machine:
-    return machine(INVENTIONS[name].mechanism, **settings)
+    return machine(INVENTIONS[name], **settings)
 
 
 def turn_between(first: np.ndarray, second: np.ndarray | float) -> float:
@@ -41,7 +41,6 @@ def values(own: Machine, **axes: float) -> Values:
 @pytest.mark.parametrize("elbow", [0.0, 180.0])
 @pytest.mark.parametrize("name", ["all turns clockwise", "a motor of either sense", "a lift between the joints"])
 def test_a_stretched_or_folded_arm_is_one_solution(name: str, elbow: float) -> None:
-    """To half of the digits: a double root has no more."""
     own = built(name)
     axes = values(own, A1=20.0, A2=elbow, A3=-50.0, P1=5.0)
     margins = own.forward(axes)
@@ -66,7 +65,6 @@ def test_equal_links_folded_turn_freely(reference: float) -> None:
 
 @pytest.mark.parametrize("reference", REFERENCES)
 def test_a_telescope_of_no_length_keeps_its_direction(reference: float) -> None:
-    """Where a telescope has no length its direction keeps the reference, and the pose is reached."""
     own = built("a telescope with a wrist")
     axes = values(own, A1=20.0, P1=0.0, A2=-50.0)
     assert abs(own.forward(axes)["branch_reach"]) <= 1e-11
@@ -90,7 +88,6 @@ def test_a_wrist_above_the_shoulder_leaves_the_column_free(reference: float) -> 
 
 @pytest.mark.long
 def test_a_boom_that_stands_up_is_on_both_sides() -> None:
-    """Where a boom stands upright both slots hold the same solution."""
     own = built("a boom that tips over")
     axes = values(own, A1=20.0, A2=90.0, P1=100.0)
     first, second = slots_at(own, axes, values(own, A1=-70.0, A2=0.0, P1=0.0))
@@ -99,7 +96,6 @@ def test_a_boom_that_stands_up_is_on_both_sides() -> None:
 
 
 def test_what_is_free_does_not_depend_on_the_reference_elsewhere() -> None:
-    """At a regular pose the solution does not depend on the reference."""
     own = built("a lift between the joints")
     axes = values(own, A1=20.0, A2=60.0, A3=-50.0, P1=5.0)
     near = [slots_at(own, axes, values(own, A1=r, A2=r, A3=r, P1=r)) for r in (-100.0, 0.0, 100.0)]

@@ -5,10 +5,11 @@ from collections.abc import Callable
 import pytest
 from sympy import cos, pi, sin
 
-from derive.description.mechanism import Mechanism, Task, Turning, Vendor, branch, distance, length, linear, rotary
+from derive.description.mechanism import Mechanism, Task, Turning, branch, distance, length, linear, rotary
 from derive.geometry.frames import Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
 from derive.kinematics.build import build
 from derive.witness import witness
+from tests.unit.kinematics.inventions import described
 
 pytestmark = pytest.mark.slow
 
@@ -24,10 +25,9 @@ WRIST = branch("wrist", sin(A5), first=+1, second=-1)
 ZYZ = Rz(A4) * Ry(A5) * Rz(A6)
 
 
-def arm(**description: object) -> Mechanism:
-    details = {"name": "Kin_Invented", "vendor": Vendor.TEXTBOOK, "family": "test", "source": "none", "summary": "none"}
-    details |= {"parameters": (L1, L2, ASIDE, TIP, RISE), "task": FULL, "offset_interface": False}
-    return Mechanism(**{**details, **description})  # type: ignore[arg-type]
+def arm(**stated: object) -> Mechanism:
+    common = {"parameters": (L1, L2, ASIDE, TIP, RISE), "task": FULL, "offset_interface": False}
+    return described(**{**common, **stated})
 
 
 def telescope() -> Mechanism:
@@ -175,9 +175,8 @@ ARMS: dict[Callable[[], Mechanism], int] = {
 
 @pytest.mark.parametrize("make", ARMS, ids=lambda f: f.__name__)
 def test_an_arm_in_space(make: Callable[[], Mechanism]) -> None:
-    """An invented spatial arm is derived, and the witness finds as many solutions as the inverse has."""
-    described = make()
-    evidence = witness(build(described), described)
+    mechanism = make()
+    evidence = witness(build(mechanism), mechanism)
     assert evidence.inverted is not None
     assert evidence.inverted.solutions == ARMS[make]
     assert max(evidence.closure_residual, evidence.inverted.round_trip, evidence.inverted.jacobian) <= 1e-10

@@ -11,14 +11,11 @@ from sympy import cos, sin
 
 from derive.description.mechanism import (
     Branch,
-    DescriptionError,
     Joint,
     Mechanism,
     Rod,
     Task,
     Turning,
-    Vendor,
-    assembly,
     branch,
     distance,
     length,
@@ -33,6 +30,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.report.self_test import self_test
 from derive.vectors import dot, minus, vector
 from derive.witness import witness
+from tests.unit.kinematics.inventions import described as invented
 from tests.unit.kinematics.machine import Values, machine
 
 pytestmark = pytest.mark.slow
@@ -44,14 +42,6 @@ CRANK = length("crank_length", "cranks", nominal=120.0)
 HOME_X, HOME_Z = distance("home_x", "home", nominal=10.0), distance("home_z", "home", nominal=-260.0)
 TRIANGLE = ((-260.0, -150.0), (250.0, -170.0), (20.0, 300.0))
 SMALL = ((-60.0, -35.0), (70.0, -30.0), (5.0, 80.0))
-
-
-def _details(**description: object) -> Mechanism:
-    details = {
-        "name": "Kin_Invented", "vendor": Vendor.TEXTBOOK, "family": "test", "source": "none", "summary": "none",
-        "offset_interface": False,
-    }  # fmt: skip
-    return Mechanism(**{**details, **description})  # type: ignore[arg-type]
 
 
 def _along(number: int, rod_: Rod, direction: Sequence[object]) -> Branch:
@@ -76,7 +66,8 @@ def three_prr() -> Mechanism:
     directions = [(1.0, 0.0), (-0.6, 0.8), (-0.6, -0.8)]
     joints, ends = _sliders(TRIANGLE, directions)
     rods = tuple(rod(str(k), e, on_plate(*p), ROD) for k, (e, p) in enumerate(zip(ends, SMALL, strict=True), 1))
-    return _details(
+    return invented(
+        offset_interface=False,
         parameters=(ROD, HOME_X),
         joints=joints,
         rods=rods,
@@ -93,7 +84,8 @@ def three_rpr() -> Mechanism:
         rod(str(k), tuple(map(sp.Float, b)), on_plate(*p), j)
         for k, (b, p, j) in enumerate(zip(TRIANGLE, SMALL, joints, strict=True), 1)
     )
-    return _details(
+    return invented(
+        offset_interface=False,
         parameters=(HOME_X,),
         joints=joints,
         rods=rods,
@@ -115,7 +107,8 @@ def two_cranks_and_a_leg() -> Mechanism:
     second = rod("2", vector(slide, -200), on_plate(*SMALL[1]), ROD)
     third = rod("3", vector(20, 300), on_plate(*SMALL[2]), leg)
     along = minus(vector(*first.plate), knee)
-    return _details(
+    return invented(
+        offset_interface=False,
         parameters=(ROD, CRANK, HOME_X),
         joints=(turn, slide, leg),
         rods=(first, second, third),
@@ -143,7 +136,8 @@ def four_rods() -> Mechanism:
         span = minus(vector(*rods[-1].plate), knee)
         ahead = span[0] * d[0] + span[1] * d[1]
         branches.append(branch(f"knee_{k}", -cos(j) * span[2] - sin(j) * ahead, outward=+1, inward=-1))
-    return _details(
+    return invented(
+        offset_interface=False,
         parameters=(ROD, CRANK, HOME_X, HOME_Z),
         joints=joints,
         rods=tuple(rods),
@@ -167,7 +161,8 @@ def six_rus() -> Mechanism:
         span = minus(vector(*rods[-1].plate), knee)
         ahead = span[0] * d[0] + span[1] * d[1]
         branches.append(branch(f"knee_{k}", cos(j) * span[2] - sin(j) * ahead, up=+1, down=-1))
-    return _details(
+    return invented(
+        offset_interface=False,
         parameters=(ROD, CRANK, HOME_X, distance("home_z", "home", nominal=270.0)),
         joints=joints,
         rods=tuple(rods),
@@ -204,14 +199,12 @@ def described(name: str) -> Mechanism:
 
 @cache
 def built(name: str) -> Kinematics:
-    """The programs, with what the witness found."""
     kinematics = machine(validate(described(name))).kinematics
     evidence = witness(kinematics, described(name))
     return replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
 
 
 def poses_of(name: str) -> Values:
-    """Poses around home."""
     mechanism, rng = described(name), np.random.default_rng(6)
     given = {p.symbol: p.nominal for p in mechanism.parameters}
     home = [float(v.subs(given)) for v in mechanism.home]
@@ -248,21 +241,3 @@ def test_there_and_back(name: str) -> None:
     for value in pose:
         assert np.abs(again[value] - pose[value][good]).max() < 1e-9
     assert all((again[f"branch_{b.name}"] > 0).all() for b in own.kinematics.branches)
-
-
-def test_a_loop_that_is_not_described_as_needed_is_refused() -> None:
-    """The sentence says what is missing."""
-    own = three_rpr()
-    on_a_slide = replace(own.rods[0], plate=on_plate(own.joints[0], 1.0))
-    for wrong, words in (
-        (replace(own, rods=own.rods[:2], joints=own.joints[:2], positive=own.positive[:2]), "only 2 joints"),
-        (replace(own, offset_interface=True), "needs offset_interface=False"),
-        (replace(own, task=Task("xy", Turning.DIRECTION)), "only 3 joints"),
-        (replace(own, assembly=assembly("plate", own.joints[0], margin="x", one=1, two=-1)), "needs no assembly"),
-        (replace(own, home=own.home[:2]), "needs a home pose of 3 coordinates, and has 2"),
-        (replace(own, task=Task("xy", Turning.FULL)), "and there are only 3 joints"),
-        (replace(own, rods=(on_a_slide, *own.rods[1:])), "which no joint moves on it"),
-        (replace(own, closure=(own.joints[0].symbol - own.joints[1].symbol,)), "closure has 4 equations"),
-    ):
-        with pytest.raises(DescriptionError, match=words):
-            machine(wrong)

@@ -29,10 +29,6 @@ def program(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
     return normalise("program", lets, [Output(o.name, o) for o in outputs])
 
 
-def lets_of(one: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in one.lets()}
-
-
 def test_two_programs_share_what_is_hoisted() -> None:
     first, second = program(Let(F, C * D * X), outputs=(F,)), program(Let(G, C * D * Y), outputs=(G,))
     _, hoisted = lowered([first, Program("other", second.inputs, second.body, second.outputs)], CONSTANTS)
@@ -50,7 +46,7 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
         Let(real("k"), (F - D) * X / (Y * (F - D) + 1)),
     )
     (shorter,), _ = lowered([program(*lets, outputs=(G, H, real("k")))], ())
-    found = lets_of(shorter)
+    found = values(shorter)
     assert found["f"] == -X * A - Y * B
     assert found["f_times_d"] == D * F and found["f_minus_d"] == F - D
 
@@ -58,11 +54,10 @@ def test_the_words_of_a_name_are_those_of_its_value() -> None:
 def test_a_factor_takes_the_sign_that_leaves_no_minus_in_front() -> None:
     lets = (Let(F, -X * A - Y * B), Let(G, Y * A - X * B), Let(H, (F * Y - G * X) * A))
     (shorter,), _ = lowered([program(*lets, outputs=(F, G, H))], ())
-    assert lets_of(shorter)["h"] == A * (F * Y - G * X)
+    assert values(shorter)["h"] == A * (F * Y - G * X)
 
 
 def test_a_loop_keeps_what_moves_inside_and_what_stays_outside() -> None:
-    """Values that do not depend on the state of an iteration are computed before it."""
     step = (Let(F, X * Y * A), Let(G, F + X * Y))
     loop = Iterate((A,), (B,), step, (A + F,), sp.Le(G, 1), 3, Status.UNREACHABLE)
     one = program(loop, outputs=(G,))
@@ -117,7 +112,6 @@ def random_program(draw: st.DrawFn) -> Program:
 @settings(max_examples=50)
 @given(random_program(), st.integers(0, 2**16))
 def test_values_stay_the_same(one: Program, seed: int) -> None:
-    """A lowered program has the outputs of the program before."""
     (shorter,), hoisted = lowered([one], CONSTANTS)
     rng = np.random.default_rng(seed)
     given_ = {name: rng.uniform(-2.0, 2.0, 5) for name in "xyzcd"}
@@ -162,7 +156,6 @@ def test_what_is_short_stays_as_it_is() -> None:
 
 
 def test_a_long_name_is_shortened_and_stays_unique() -> None:
-    """Two long names with the same ends are numbered; a name of usual length is kept."""
     names = Names(())
     first, second = (names.fresh(f"sum_in_r22_from_{word * 20}_{'turn_x_' * 9}tried").name for word in ("ab_", "cd_"))
     third = names.fresh(f"sum_in_r22_from_{'ab_' * 21}{'turn_x_' * 9}tried").name
@@ -205,7 +198,6 @@ def test_products_of_both_branches_are_computed_once() -> None:
 
 
 def test_the_angle_of_a_mirrored_direction_is_the_negative() -> None:
-    """The angle of a mirrored direction is the negative of the angle, and costs no arc tangent."""
     swing = (
         Let(R, ToReal(ELBOW.symbol) * Root(X)),
         Let(ANGLE, Atan2(R, C)),

@@ -193,7 +193,6 @@ def test_a_condition_is_not_crossed() -> None:
 
 
 def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
-    """A value that only the second sides of two choices read is bound on both of these sides."""
     body = [
         Let(D, sp.sin(Y)),
         Let(A, Select(LARGE, X, D)),

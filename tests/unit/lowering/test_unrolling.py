@@ -18,6 +18,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.lost_digits.doubts import without_meeting
 from derive.lowering.unrolling import is_straight, unroll
 from tests.mechanisms import kinematics_of
+from tests.unit.answers import values
 
 pytestmark = pytest.mark.slow
 
@@ -35,13 +36,9 @@ def program(*body: Let | Require | Solve | Iterate, outputs: dict[str, sp.Expr])
     return Program("p", inputs, body, tuple(Output(n, v) for n, v in outputs.items()))
 
 
-def lets(program: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in program.lets()}
-
-
 def test_a_negative_is_not_computed_again() -> None:
     found = unroll(program(Let(A, Root(X) * ELBOW.symbol), outputs={"o": A + 1}), (ELBOW,))
-    assert lets(found) == {"a_right": Root(X)}
+    assert values(found) == {"a_right": Root(X)}
     assert {o.name: o.value for o in found.outputs}["o_left"] == 1 - real("a_right")
 
 
@@ -68,7 +65,6 @@ def test_the_refusal_of_a_slot_is_its_first_condition_that_does_not_hold() -> No
 
 
 def test_linear_equations_are_unrolled_too() -> None:
-    """A system of linear equations is solved for each branch, with the same solutions as before."""
     system = Solve((A,), (X + ELBOW.symbol,), (Y,), determinant=B)
     looped = Program("p", (ELBOW.symbol, X, Y), (system,), (Output("o", A), Output("d", B)))
     values = {"x": np.array([3.0, 1.0, -1.0]), "y": np.array([2.0, 5.0, 7.0])}
@@ -76,7 +72,6 @@ def test_linear_equations_are_unrolled_too() -> None:
 
 
 def test_what_iterates_is_not_unrolled() -> None:
-    """A program with an iteration cannot be unrolled."""
     loop = Iterate((A,), (X,), (), (A / 2,), sp.Lt(A, 1), 9, Status.IMPOSSIBLE)
     looped = Program("p", (X,), (loop,), (Output("o", A),))
     assert not is_straight(looped)
@@ -85,11 +80,10 @@ def test_what_iterates_is_not_unrolled() -> None:
 
 
 def test_names_that_a_language_would_join_stay_apart() -> None:
-    """The names of unrolled values differ from all other names."""
     taken = Let(real("a_right"), Y + 7)
     body = (taken, Let(A, X * ELBOW.symbol + Y))
     found = unroll(program(*body, outputs={"o": A, "t": taken.name}), (ELBOW,))
-    assert set(lets(found)) == {"a_right", "a_right_2", "a_left"}
+    assert set(values(found)) == {"a_right", "a_right_2", "a_left"}
     verify(found)
 
 

@@ -62,7 +62,6 @@ def test_nor_for_what_is_made_of_it_in_proportion() -> None:
     ids=str,
 )
 def test_what_else_is_made_of_it_keeps_the_division(read: sp.Expr) -> None:
-    """The division stays where another value reads sine or cosine."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, read), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
@@ -93,7 +92,6 @@ def test_the_angle_of_a_rotated_direction_is_a_sum(senses: tuple[int, int], sign
 
 
 def test_a_sum_of_three_takes_one_new_angle() -> None:
-    """A sum of three angles needs one arc tangent besides those of the other axes."""
     lets = (
         Let(C1, X / 2), Let(S1, Y / 2), Let(C2, U / 2), Let(S2, V / 2), Let(C12, C1 * C2 - S1 * S2),
         Let(S12, S1 * C2 + C1 * S2),
@@ -106,13 +104,11 @@ def test_a_sum_of_three_takes_one_new_angle() -> None:
 
 
 def test_two_new_angles_for_one_are_no_gain() -> None:
-    """A sum of angles is not used where it needs two arc tangents instead of one."""
     program = of(*SUM, axis(AXIS3, S12, C12), outputs=(AXIS3,))
     assert plain_directions(program) == program
 
 
 def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
-    """A rotated direction that is needed in any case gives its angle by an arc tangent."""
     program = of(
         *SUM, axis(AXIS1, S1, C1), axis(AXIS2, S2, C2), axis(AXIS3, S12, C12), outputs=(AXIS1, AXIS2, AXIS3, C12)
     )
@@ -120,7 +116,6 @@ def test_a_rotated_direction_that_something_else_reads_is_left_alone() -> None:
 
 
 def test_angles_first_where_nothing_reads_sines_but_the_sum() -> None:
-    """Where only a sum of angles reads sines and cosines, the angles are added instead."""
     lets = (
         Let(real("along"), X * U + Y * V), Let(real("across"), Y * U - X * V),
         length(real("along") ** 2 + real("across") ** 2),
@@ -160,7 +155,6 @@ def test_an_angle_whose_turns_count_is_no_sum() -> None:
 
 
 def test_turns_count_wherever_more_than_a_sine_or_the_nearest_turn_is_taken() -> None:
-    """An angle is free modulo a turn only if sine, cosine and the nearest period alone read it."""
     angle, other = real("angle"), real("other")
     bound = (Let(angle, Atan2(X, Y)), Let(other, angle - T))
     assert angles_modulo_turns(of(*bound, Let(R, sp.sin(other + X)), outputs=(R,))) == {angle, other}
@@ -192,7 +186,6 @@ def test_a_quotient_that_reads_another_keeps_its_division() -> None:
 
 
 def test_an_angle_times_a_coordinate_of_its_direction_keeps_the_division() -> None:
-    """A product of an angle with its own cosine keeps the division."""
     program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Wrap(Atan2(S1, C1))), outputs=(AXIS1, E))
     assert "l" in values(plain_directions(program))
 
@@ -243,7 +236,6 @@ def _agree(first: Program, second: Program) -> None:
 def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
     length: sp.Expr, condition: sp.Basic, is_proven: bool
 ) -> None:
-    """A divisor is dropped from a direction only if it is proven to be positive."""
     program = _scaled(length, condition)
     found = plain_directions(program)
     _agree(program, found)
@@ -253,7 +245,6 @@ def test_a_divisor_leaves_a_direction_only_where_it_is_a_length(
 
 @pytest.mark.parametrize("factor", [K, -K, X * K, -Root(K**2), sp.Integer(-1)])
 def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
-    """A factor of unknown sign keeps its effect on the angle of a direction."""
     axis = NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     program = normalise("p", [Let(COS, factor * X), Let(SIN, factor * Y), Let(AXIS, axis)], [Output("axis_q", AXIS)])
     for change in (plain_directions, mirrored):
@@ -261,7 +252,6 @@ def test_a_factor_of_any_sign_turns_a_direction(factor: sp.Expr) -> None:
 
 
 def test_a_branch_sign_turns_a_direction() -> None:
-    """A branch sign in front of a direction turns the angle by half a turn on one branch."""
     sigma = Sign(count("sigma_elbow"), ("up", "down"))
     sign, axis = real("sign_elbow"), NearestPeriod(Atan2(SIN, COS) / DEGREE, real("ref"))
     lets = [Let(sign, ToReal(sigma.symbol)), Let(COS, sign * X), Let(SIN, sign * Y), Let(AXIS, axis)]

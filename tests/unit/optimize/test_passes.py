@@ -20,6 +20,7 @@ from derive.ir.verify import BrokenProgram
 from derive.lowering.scheduling import scheduled
 from derive.optimize.inline import inlined
 from derive.optimize.joining import joined
+from tests.unit.answers import values
 
 A, B, C, D, E, F, P, Q, R, X, Y, Z = (real(n) for n in "abcdefpqrxyz")
 FAR = Require(sp.Gt(X, Y), Status.UNREACHABLE)
@@ -30,18 +31,12 @@ def body(program: Program) -> list[object]:
     return [s.name if isinstance(s, Let) else s.condition for s in program.body]
 
 
-def values(program: Program) -> dict[str, sp.Expr]:
-    return {let.name.name: let.value for let in program.lets()}
-
-
 def test_another_value_under_the_same_name_is_refused() -> None:
-    """Two values under one name raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match=r"a is bound twice, to x \+ 1 and to x \+ 2"):
         normalise("p", [Let(A, X + 1), Let(A, X + 2)], [Output("o", A)])
 
 
 def test_a_circle_is_refused() -> None:
-    """Values that need each other raise `BrokenProgram`."""
     with pytest.raises(BrokenProgram, match="is read before it is bound"):
         normalise("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
 
@@ -54,7 +49,6 @@ def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
 
 
 def test_a_positive_name_does_not_decide_a_condition() -> None:
-    """The assumptions of a symbol decide no condition."""
     long = sp.Symbol("a", positive=True)
     program = normalise("p", [Let(B, Select(sp.Gt(long - X, 0), X, Y))], [Output("o", B)])
     assert program.inputs == (A, X, Y)
@@ -72,13 +66,11 @@ def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
 
 
 def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
-    """The inputs are the names that no statement binds, in alphabetical order."""
     program = normalise("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
     assert program.inputs == (A, C, X)
 
 
 def test_hoisting_goes_through_lets_and_conditions() -> None:
-    """Hoisting follows chains of values, and leaves conditions where they are."""
     program = normalise("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
     (lowered,), hoisted = hoist([program], ["c"])
     assert [let.name for let in hoisted] == [A, B]
@@ -86,7 +78,6 @@ def test_hoisting_goes_through_lets_and_conditions() -> None:
 
 
 def test_hoisting_moves_what_depends_on_constants_alone() -> None:
-    """Values of constants alone are moved out of programs, and computed once."""
     first = normalise("first", [Let(A, C * 2), Let(B, A + X)], [Output("o", B * A)])
     second = normalise("second", [Let(D, C * 2), FAR], [Output("o", D)])
     (lowered_first, lowered_second), hoisted = hoist([first, second], ["c"])
@@ -110,7 +101,6 @@ def test_a_hoisted_name_makes_way_for_others() -> None:
 
 
 def test_hoisting_changes_no_value() -> None:
-    """A program gives the same results after hoisting."""
     statements = [Let(A, Root(C) + D), Let(B, A * X), Require(sp.Gt(B, A), Status.UNREACHABLE), Let(Y, B / A + C)]
     program = normalise("p", statements, [Output("o", Y), Output("q", A)])
     (lowered,), hoisted = hoist([program], ["c", "d"])
@@ -210,7 +200,6 @@ SIGNS = (Sign(real("sigma_arm"), ("front", "back")), Sign(real("sigma_elbow"), (
 
 
 def test_words_behind_a_name() -> None:
-    """A name is split into the neutral name and the words of its branches."""
     assert without_words("axis_a1_front_up", SIGNS) == ("axis_a1", ("front", "up"))
     assert without_words("cos_q1_back", SIGNS) == ("cos_q1", ("back",))
     assert without_words("up", SIGNS) == ("up", ())

@@ -93,7 +93,6 @@ def test_the_same_answers(mechanism: Mechanism) -> None:
 
 
 def asked(kin: Kinematics, seed: int, cornered: bool) -> dict[str, Array]:
-    """Constants of a machine, with commanded poses and references."""
     mechanism = kin.mechanism
     parameters = machine_at(mechanism)
     axes = sample_axes(mechanism, parameters, POSES, seed)

@@ -63,7 +63,6 @@ def test_the_third_column_takes_its_place(row: int, columns: tuple[int, int], si
 
 
 def test_what_is_no_such_product_is_left_alone() -> None:
-    """Expressions that only resemble such a cross product stay as they are."""
     program = crossed(0, 2, 0)
     made = [s for s in program.body if isinstance(s, Let) and s.name == MADE_Y][0].value
     dx, dy = sp.Add.make_args(made)

@@ -109,7 +109,6 @@ class Case:
 
 
 def _side(lines: list[str]) -> list[str]:
-    """The lines of a side, which are taken away."""
     count_ = next((k for k, line in enumerate(lines) if not line.startswith("    ")), len(lines))
     taken, lines[:] = lines[:count_], lines[count_:]
     return [line[4:] for line in taken]

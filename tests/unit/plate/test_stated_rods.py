@@ -171,7 +171,6 @@ def test_a_rod_without_a_cone_is_free_and_others_have_their_own() -> None:
 
 
 def test_the_hexapod_has_them() -> None:
-    """The rods of the hexapod have cones at both ends."""
     assert {r.base_cone for r in MECHANISM.rods} == {BASE_CONE * DEGREE}
     assert {r.plate_cone for r in MECHANISM.rods} == {PLATFORM_CONE * DEGREE}
 

@@ -98,12 +98,10 @@ def trigonometry(**angles: float) -> dict[sp.Symbol, float]:
 
 
 def distance(first: float, second: float) -> float:
-    """The difference of two angles modulo a turn."""
     return float(abs(np.angle(np.exp(1j * (first - second)))))
 
 
 def angle_of(values: Mapping[str, Array], angle: sp.Symbol) -> float:
-    """The angle whose sine and cosine were found."""
     return float(np.arctan2(values[sine(angle).name], values[cosine(angle).name]))
 
 

@@ -45,7 +45,6 @@ DIRECTED = problem(S * V + B, lengths=(V,), signs=(S,))
 
 @given(k=LENGTHS, b=NUMBERS, c=NUMBERS)
 def test_the_root(k: float, b: float, c: float) -> None:
-    """The root solves the equation to rounding."""
     values, status = execute(answer(affine, MANY_TERMS).statements, {K: k, B: b, C: c})
     assert status is Status.OK
     residual = at(MANY_TERMS.equations[0].expression, values)
@@ -61,7 +60,6 @@ def test_a_direction_never_vanishes(s: float, b: float) -> None:
 
 
 def test_one_root_without_conditions() -> None:
-    """The rule binds one root, without a branch, a degenerate case or a condition."""
     binding = answer(affine, MANY_TERMS)
     assert binding.unknowns == (V,)
     assert binding.determinant is binding.conditioning is None
@@ -69,13 +67,11 @@ def test_one_root_without_conditions() -> None:
 
 
 def test_every_equation_is_a_candidate() -> None:
-    """The rule offers every equation that it can solve."""
     found = answers(affine, problem(2 * V - B, V * K - C, 3 * W + C, lengths=(V, W)))
     assert [b.unknowns for b in found] == [(V,), (V,), (W,)]
 
 
 def test_a_name_stands_for_its_definition() -> None:
-    """A coefficient that may vanish by its definition is not divided by."""
     name, long, short = real("name"), sp.Symbol("long", positive=True), sp.Symbol("short", positive=True)
     given_problem = problem(name * V - B, lengths=(V,))
     cannot = type(given_problem)(**{**vars(given_problem), "definitions": {name: long + short}})
@@ -90,13 +86,11 @@ def test_a_name_stands_for_its_definition() -> None:
     ids=str,
 )
 def test_not_taken(expression: sp.Expr) -> None:
-    """The rule takes no equation of another form."""
     assert answers(affine, problem(expression, angles=(U,), lengths=(V, W))) == []
 
 
 @given(k=st.floats(1e-9, 1e9), b=ANYTHING, c=ANYTHING)
 def test_total(k: float, b: float, c: float) -> None:
-    """The statements give finite numbers for any finite input."""
     values, _ = execute(answer(affine, MANY_TERMS).statements, {K: k, B: b, C: c})
     assert all_finite(values)
 

@@ -72,7 +72,6 @@ def residual(case: Given, equation: Equation, **numbers: float) -> float:
 def test_solutions_are_kept(
     case: Given, elimination: Callable[[Problem], tuple[Equation, ...]], count: int, **numbers: float
 ) -> None:
-    """Every solution of the equations solves the equations that an elimination adds."""
     found = elimination(case[0])
     assert len(found) == count
     size = 1 + max(abs(v) for v in numbers.values())
@@ -85,14 +84,12 @@ def unknowns(case: Given, elimination: Callable[[Problem], tuple[Equation, ...]]
 
 
 def test_a_difference_loses_a_length() -> None:
-    """The difference of two equations eliminates a length that both contain."""
     assert unknowns(BELTS, differences) == [(Q,), (P,), (Q, A1), (Q, A1)]
     assert unknowns(TABLE, differences) == [(Q,), (P,)]
     assert unknowns(RAIL, differences) == [(A1,)]
 
 
 def test_squares_lose_an_angle() -> None:
-    """The sum of squares of two equations eliminates an angle."""
     assert unknowns(ARM, squares) == unknowns(TURNED_BASE, squares) == [(A2,)]
 
 
@@ -102,12 +99,10 @@ def test_squares_that_lose_nothing_are_no_consequence() -> None:
 
 
 def test_nothing_follows_without_a_known_side() -> None:
-    """No sum of squares is formed where the other side is not known."""
     assert squares(problem(L1 * sp.cos(A1) + L2 * sp.cos(A2), L1 * sp.sin(A1) - Y, angles=(A1, A2))) == ()
 
 
 def test_a_plain_unknown_is_not_squared() -> None:
-    """No sum of squares is formed with an unknown length."""
     assert squares(problem(P + sp.cos(A1) - X, sp.sin(A1) - Y, angles=(A1,), lengths=(P,))) == ()
 
 

@@ -59,7 +59,6 @@ KINDS = {
 @pytest.mark.parametrize("kind", KINDS)
 @given(a=NUMBERS, b=NUMBERS, u=ANGLES, free=ANGLES)
 def test_the_root(kind: str, a: float, b: float, u: float, free: float) -> None:
-    """The root solves both equations, for each kind of pair."""
     given_problem, sense = KINDS[kind]
     right = complex(a, b) * np.exp(1j * sense * u)
     binding = answer(pair, given_problem)
@@ -86,7 +85,6 @@ def test_a_vanishing_arm_leaves_the_reference(size: float, is_free: bool, free: 
 
 
 def test_the_conditioning_is_what_turns() -> None:
-    """The conditioning of a rotation is the length of the vector that it rotates."""
     conditioning = answer(pair, TURNED).conditioning
     assert conditioning is not None
     assert (conditioning.angle, conditioning.scale) == (U, SCALE)
@@ -111,7 +109,6 @@ def test_the_reference_stays_on_the_half_circle_of_the_machine(half: str) -> Non
 @few
 @given(w=ANGLES, u=ANGLES)
 def test_an_arm_of_length_one_has_no_degenerate_case(w: float, u: float) -> None:
-    """A vector of length one always determines its angle, and nothing is divided."""
     known = problem(sp.cos(U + W) - E, sp.sin(U + W) - F, angles=(U,), known=(W,))
     binding = answer(pair, known)
     assert binding.conditioning is None
@@ -149,12 +146,10 @@ def test_cramer(link_1: float, link_2: float, b: float, u: float) -> None:
     ids=lambda e: str(e),
 )
 def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
-    """The rule takes no pair of another form."""
     assert answers(pair, problem(first, second, angles=(U, W), lengths=(V,))) == []
 
 
 def test_three_equations_are_three_pairs() -> None:
-    """The rule offers every pair of equations that it can solve."""
     assert len(answers(pair, problem(sp.cos(U) - E, sp.sin(U) - F, sp.cos(U) - 2 * sp.sin(U) - A, angles=(U,)))) == 3
 
 
@@ -176,7 +171,6 @@ REACH = sp.Symbol("reach", positive=True)
 
 
 def value(reason: Reason, **values: float) -> float:
-    """The amount at numbers."""
     assert reason.amount is not None
     found, _ = run(normalise("amount", [], [Output("amount", reason.amount)]), values)
     return float(found["amount"])
@@ -189,9 +183,6 @@ def triangle(first: sp.Expr, second: sp.Expr, third: sp.Expr) -> sp.Expr:
 
 @given(LENGTH, LENGTH, LENGTH)
 def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: float, reach: float) -> None:
-    """The missing amount of a triangle that does not close is the length by which its third side is too long or too
-    short.
-    """
     missing = max(reach - first - second, abs(first - second) - reach)
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(FIRST, SECOND, REACH), [])
@@ -201,7 +192,6 @@ def test_the_third_side_is_so_much_too_long_or_too_short(first: float, second: f
 
 @given(SIGNED, SIGNED, LENGTH)
 def test_whatever_signs_the_lengths_have(left: float, right: float, reach: float) -> None:
-    """The missing amount does not depend on the signs of the lengths."""
     missing = max(reach - abs(left) - abs(right), abs(abs(left) - abs(right)) - reach)
     assume(missing > 1e-6)
     reason = out_of_reach(Q, triangle(LEFT, RIGHT, REACH), [])
@@ -217,21 +207,18 @@ def test_the_amount_is_the_larger_of_two_differences() -> None:
 
 @given(SIGNED, st.floats(0.0, 800.0))
 def test_a_length_is_so_much_too_short_for_another(left: float, reach: float) -> None:
-    """Where a length of either sign does not fit beside another, the difference of their sizes is missing."""
     assume(abs(left) > reach + 1e-6)
     reason = out_of_reach(Q, (REACH - LEFT) * (REACH + LEFT), [])
     assert abs(value(reason, left=left, reach=reach) - (abs(left) - reach)) < 1e-9 * abs(left)
 
 
 def test_a_product_that_is_no_triangle_has_no_amount() -> None:
-    """Four sums of lengths that are not Heron's have no amount, rather than a wrong one."""
     reason = out_of_reach(Q, (FIRST - SECOND) * (FIRST + SECOND) * (FIRST - REACH) * (FIRST + REACH), [])
     assert (reason.amount, reason.unit) == (None, Unit.NONE)
 
 
 @given(LENGTH, st.floats(-800.0, 800.0), st.floats(-800.0, 800.0))
 def test_a_rod_would_have_to_be_so_much_longer(rod: float, x: float, y: float) -> None:
-    """The missing amount of a rod that does not reach is the length that it lacks."""
     assume(x * x + y * y > (rod + 1e-3) ** 2)
     reason = cannot_reach("rod 1", sp.factor(ROD**2 - X**2 - Y**2), [])
     assert reason.words == "rod 1 cannot reach"
@@ -240,7 +227,6 @@ def test_a_rod_would_have_to_be_so_much_longer(rod: float, x: float, y: float) -
 
 @given(LENGTH, st.floats(-800.0, 800.0), st.sampled_from([1, -1]), st.sampled_from([1, -1]))
 def test_in_whatever_signs_the_factors_are_written(rod: float, x: float, first: int, second: int) -> None:
-    """The missing amount does not depend on the signs of the factors of the radicand."""
     assume(abs(x) > rod + 1e-3)
     radicand = sp.Mul(first * second, first * (ROD - X), second * (ROD + X), evaluate=False)
     assert abs(value(cannot_reach("rod 1", radicand, []), rod=rod, x=x) - (abs(x) - rod)) < 1e-9 * abs(x)
@@ -263,6 +249,5 @@ def test_a_rod_in_a_product_that_has_a_name(arm: float, rod: float, share: float
 
 
 def test_what_is_no_length_has_no_amount() -> None:
-    """A radicand without a length as factor gives a reason without an amount."""
     reason = out_of_reach(Q, 4 * DEGREE * X * Y, [])
     assert (reason.amount, reason.unit) == (None, Unit.NONE)

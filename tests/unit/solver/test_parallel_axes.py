@@ -47,7 +47,6 @@ def total_of(name: str, turns: tuple[float, ...]) -> float:
 @pytest.mark.parametrize("name", SUMS)
 @given(turns=st.tuples(ANGLES, ANGLES, ANGLES), x=ANGLES, y=ANGLES, link=ANGLES)
 def test_the_same_equations(name: str, turns: tuple[float, ...], x: float, y: float, link: float) -> None:
-    """With a sum of angles as unknown, the equations have the same values."""
     total = the_sum(name)
     changed = substitute(CLOSURE, total)
     values = {"a1": turns[0], "a2": turns[1], "a3": turns[2], "x": x, "y": y, "link": link}
@@ -59,7 +58,6 @@ def test_the_same_equations(name: str, turns: tuple[float, ...], x: float, y: fl
 
 @pytest.mark.parametrize("name", SUMS)
 def test_the_replaced_angle_leaves_all_but_plain_equations(name: str) -> None:
-    """An equation in which the angle stands outside sines and cosines waits for its whole turns."""
     total = the_sum(name)
     changed = substitute(CLOSURE, total)
     assert total.replaced not in changed.angles
@@ -70,7 +68,6 @@ def test_the_replaced_angle_leaves_all_but_plain_equations(name: str) -> None:
 
 
 def test_what_holds_the_sum_alone_becomes_one_unknown() -> None:
-    """An equation that contains a sum of angles alone has one unknown."""
     changed = substitute(CLOSURE, the_sum("a1 + a2 + a3"))
     assert changed.unknowns_of(changed.equations[1].expression) == (real("total"),)
 
@@ -79,7 +76,6 @@ def test_what_holds_the_sum_alone_becomes_one_unknown() -> None:
 @pytest.mark.parametrize("name", SUMS)
 @given(turns=st.tuples(ANGLES, ANGLES, ANGLES))
 def test_the_replaced_angle_follows(name: str, turns: tuple[float, ...]) -> None:
-    """The angle that the sum replaces is computed from the sum and the other angles."""
     total = the_sum(name)
     solved = _with_unknowns(substitute(CLOSURE, total), ())
     binding = resolve(solved, total)
@@ -93,7 +89,6 @@ def test_the_replaced_angle_follows(name: str, turns: tuple[float, ...]) -> None
 
 @pytest.mark.parametrize("missing", [real("total"), A1, A2])
 def test_it_waits_for_all_others(missing: sp.Symbol) -> None:
-    """The replaced angle is not computed before all other angles of the sum are known."""
     total = the_sum("a1 + a2 + a3")
     assert resolve(_with_unknowns(substitute(CLOSURE, total), (missing,)), total) is None
 
@@ -117,7 +112,6 @@ def test_candidates() -> None:
 
 
 def test_known_angles_make_no_sum() -> None:
-    """A sum with a known angle is no candidate for an unknown."""
     known = _with_unknowns(CLOSURE, (A2,))
     assert candidate_sums(known, [A1 + A2, A2, 2 * A2]) == ()
 

@@ -51,7 +51,6 @@ ELLIPSE = problem(K * F * sp.cos(V) - A, -2 * F * sp.sin(V) - B, angles=(V,), le
 @pytest.mark.parametrize("sigma", [1.0, -1.0])
 @given(a=NUMBERS, b=NUMBERS, free=ANGLES)
 def test_both_roots(sigma: float, a: float, b: float, free: float) -> None:
-    """Both roots solve the equations, with the length positive on one branch."""
     binding = answer(polar, PLAIN)
     values, status = execute(binding.statements, {A: a, B: b, SIGMA: sigma, SCALE: 1.0, FREE: free})
     assert status is Status.OK
@@ -79,7 +78,6 @@ def test_a_positive_radius_has_one_root(a: float, b: float) -> None:
 @few
 @given(a=NUMBERS, b=NUMBERS, c=NUMBERS, sigma=st.sampled_from([1.0, -1.0]))
 def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: float, sigma: float) -> None:
-    """The rule solves the equations in either order, and with shifted right sides."""
     values, _ = execute(answer(polar, COMPASS).statements, {A: a, B: b, C: c, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
     size = hypot(b, a + c)
     assert abs(values["f"] * values["cos_v"] - b) <= max(1e-13 * size, AT_CENTRE)
@@ -90,7 +88,6 @@ def test_the_equations_may_stand_the_other_way_round(a: float, b: float, c: floa
 @few
 @given(f=NUMBERS, v=ANGLES, k=LENGTHS)
 def test_factors_of_the_radius(f: float, v: float, k: float) -> None:
-    """The rule solves equations whose radius has constant factors."""
     right = {A: k * f * cos(v), B: -2 * f * sin(v), K: k}
     for sigma in (1.0, -1.0):
         values, _ = execute(answer(polar, ELLIPSE).statements, {**right, SIGMA: sigma, SCALE: 1.0, FREE: 0.0})
@@ -102,7 +99,6 @@ def test_factors_of_the_radius(f: float, v: float, k: float) -> None:
 @pytest.mark.parametrize("given_problem", [PLAIN, RADIUS], ids=["two roots", "one root"])
 @pytest.mark.parametrize("size, is_free", [(0.0, True), (1.999e-9, True), (2.001e-9, False)])
 def test_the_centre_leaves_the_reference(given_problem: object, size: float, is_free: bool) -> None:
-    """At the centre the angle takes the reference, and just beside it does not."""
     binding = answer(polar, given_problem)  # type: ignore[arg-type]
     angles = set()
     for sigma in (1.0, -1.0):
@@ -156,7 +152,6 @@ def test_a_sum_becomes_known(f: float, k: float, v: float) -> None:
     ids=lambda e: str(e),
 )
 def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
-    """The rule takes no pair of another form."""
     assert answers(polar, problem(first, second, angles=(V, W), lengths=(F, G))) == []
 
 
@@ -166,7 +161,6 @@ def test_not_taken(first: sp.Expr, second: sp.Expr) -> None:
 )
 @given(a=ANYTHING, b=ANYTHING, c=ANYTHING, free=ANYTHING, k=st.floats(1e-9, 1e9), sigma=st.sampled_from([1.0, -1.0]))
 def test_total(given_problem: object, a: float, b: float, c: float, free: float, k: float, sigma: float) -> None:
-    """The statements give finite numbers for any finite input."""
     binding = answer(polar, given_problem)  # type: ignore[arg-type]
     values, _ = execute(binding.statements, {A: a, B: b, C: c, K: k, SIGMA: sigma, SCALE: k, FREE: free})
     assert all_finite(values)
@@ -189,7 +183,6 @@ def solved(x: float, y: float, beside: float, side: float, free: float = 0.7) ->
 @pytest.mark.parametrize("side", (1.0, -1.0))
 @pytest.mark.parametrize("beside", (0.0, 40.0, -40.0))
 def test_both_ways_meet_the_point(side: float, beside: float) -> None:
-    """Both roots point the arm with its lateral offset at the point."""
     for angle in np.linspace(-3.0, 3.0, 13):
         x, y = 300.0 * np.cos(angle), 300.0 * np.sin(angle)
         c, s, status = solved(x, y, beside, side)
@@ -199,27 +192,23 @@ def test_both_ways_meet_the_point(side: float, beside: float) -> None:
 
 
 def test_the_two_ways_are_two() -> None:
-    """The two signs give two different angles."""
     (c1, s1, _), (c2, s2, _) = (solved(120.0, 50.0, 40.0, side) for side in (1.0, -1.0))
     assert abs(c1 - c2) + abs(s1 - s2) > 0.1
 
 
 @pytest.mark.parametrize("side", (1.0, -1.0))
 def test_on_the_axis_the_angle_is_free(side: float) -> None:
-    """A point on the axis, without a lateral offset, leaves the angle at the reference."""
     c, s, status = solved(0.0, 0.0, 0.0, side, free=0.7)
     assert (c, s, status) == (pytest.approx(np.cos(0.7)), pytest.approx(np.sin(0.7)), Status.OK)
 
 
 def test_nearer_to_the_axis_than_the_arm_is_beside_it() -> None:
-    """A point closer to the axis than the lateral offset is UNREACHABLE."""
     assert solved(30.0, 10.0, 40.0, 1.0)[2] is Status.UNREACHABLE
     assert solved(0.0, 0.0, 40.0, 1.0)[2] is Status.UNREACHABLE
 
 
 @pytest.mark.parametrize("angle", np.linspace(-3.0, 3.0, 7))
 def test_on_the_cylinder_both_ways_meet(angle: float) -> None:
-    """At the distance of the lateral offset both roots coincide."""
     x, y = 40.0 * np.cos(angle), 40.0 * np.sin(angle)
     (c1, s1, first), (c2, s2, second) = (solved(x, y, 40.0, side) for side in (1.0, -1.0))
     assert first is second is Status.OK

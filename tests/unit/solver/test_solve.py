@@ -1,13 +1,9 @@
 """The driver: problems that no mechanism of the catalogue has, solved, or refused with the equations left."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,7 +60,6 @@ class Case:
 
 
 def arm(*links: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
-    """x and y of links (length, absolute angle)."""
     return sp.Add(*[n * sp.cos(a) for n, a in links]), sp.Add(*[n * sp.sin(a) for n, a in links])
 
 
@@ -180,7 +175,6 @@ def solutions(case: Case, derivation: Derivation, given: Mapping[str, np.ndarray
 @pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_all_solutions(name: str) -> None:
-    """The derivation finds all solutions of the closure, each on the branch of its signs."""
     case = CASES[name]
     derivation, given = case.derivation, samples(case)
     found = solutions(case, derivation, given)
@@ -205,7 +199,6 @@ def _apart(case: Case, first: Mapping[str, float], second: Mapping[str, float]) 
 @pytest.mark.long("3R")
 @pytest.mark.parametrize("name", CASES)
 def test_by_these_rules(name: str) -> None:
-    """The driver uses the expected rules in the expected order."""
     assert CASES[name].derivation.rules == CASES[name].rules
 
 
@@ -235,7 +228,6 @@ UNSOLVED = {
 
 @pytest.mark.parametrize("name", UNSOLVED)
 def test_unsolved_says_what_is_left(name: str) -> None:
-    """The error for an unsolved mechanism names the equations and unknowns that are left."""
     case, message = UNSOLVED[name]
     with pytest.raises(Unsolved) as refusal:
         solve(case.problem, case.arguments, lambda angle: ())
@@ -243,7 +235,6 @@ def test_unsolved_says_what_is_left(name: str) -> None:
 
 
 def test_a_step_binds_a_name_once() -> None:
-    """Two values under one name in a derivation raise `BrokenProgram`."""
     record = DerivationRecord()
     record.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
     with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
@@ -251,9 +242,6 @@ def test_a_step_binds_a_name_once() -> None:
 
 
 def test_turns_count_once_they_are_chosen() -> None:
-    """An equation in which an angle stands outside sines and cosines waits until `resolve_angle`
-    has chosen its turns.
-    """
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1), "z": P - K * A1}, (A1,), (P,))
     turned: list[sp.Symbol] = []
 
@@ -272,7 +260,6 @@ def test_turns_count_once_they_are_chosen() -> None:
 
 
 def test_no_turn_is_chosen_that_nothing_needs() -> None:
-    """The turn of an angle is chosen only where a value needs the angle as a number."""
     case = Case({"x": sp.cos(A1), "y": sp.sin(A1)}, (A1,))
     asked: list[sp.Symbol] = []
 
@@ -282,24 +269,3 @@ def test_no_turn_is_chosen_that_nothing_needs() -> None:
 
     solve(case.problem, case.arguments, ask)  # type: ignore[attr-defined]
     assert asked == []
-
-
-DERIVE = """
-from tests.unit.solver.test_solve import CASES
-for name in ("2R with a tool beside the arm", "2R with absolute angles", "shoulder and elbow"):
-    derivation = CASES[name].derivation
-    print(derivation.rules, derivation.determinants, derivation.conditionings, *derivation.statements, sep="\\n")
-"""
-
-
-@pytest.mark.slow
-def test_the_same_text_in_every_process() -> None:
-    """The derivation is the same for two hash seeds of Python."""
-    root = Path(__file__).resolve().parents[3]
-    texts = set()
-    for seed in ("0", "4711"):
-        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(root)}
-        command = [sys.executable, "-c", DERIVE]
-        texts.add(subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=True).stdout)
-    assert len(texts) == 1
-    assert texts.pop().count("Let(name=") > 30

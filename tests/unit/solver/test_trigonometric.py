@@ -85,7 +85,6 @@ def machine(link_1: float, link_2: float, p: float, q: float) -> dict[sp.Symbol,
 @pytest.mark.parametrize("name", [n for n in KINDS if n != "law of cosines"])
 @given(link_1=LENGTHS, link_2=LENGTHS, p=NUMBERS, q=NUMBERS, u=ANGLES)
 def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float, u: float) -> None:
-    """Both roots solve the equation, and the sign of the determinant is that of the branch."""
     case = KINDS[name]
     values = machine(link_1, link_2, p, q)
     named = {s.name: np.asarray(v) for s, v in values.items()}
@@ -153,7 +152,6 @@ def test_the_boundary_belongs_to_the_workspace(name: str, side: int) -> None:
 @pytest.mark.parametrize("factor", MOST)
 @given(turn=ANGLES)
 def test_what_is_too_short_cannot_be_aimed(factor: float, turn: float) -> None:
-    """An amplitude below 1e-9 of its scale is refused."""
     case = KINDS["an arm and an offset"]
     short = 1e-9 * 300.0 * factor
     values = {**machine(300.0, 200.0, short * np.cos(turn), short * np.sin(turn)), E: 0.0}
@@ -167,7 +165,6 @@ def test_what_is_too_short_cannot_be_aimed(factor: float, turn: float) -> None:
 @pytest.mark.parametrize("name", KINDS)
 @given(link_1=st.floats(1e-3, 1e9), link_2=st.floats(1e-3, 1e9), p=ANYTHING, q=ANYTHING, e=ANYTHING, sigma=SIGNS)
 def test_total(name: str, link_1: float, link_2: float, p: float, q: float, e: float, sigma: float) -> None:
-    """The statements give finite numbers for any finite input."""
     found, _ = solved(KINDS[name], {**machine(link_1, link_2, p, q), E: e, REACH: e}, sigma)
     assert all_finite(found)
 
@@ -200,5 +197,4 @@ def test_the_margin_needs_no_unit() -> None:
     ids=str,
 )
 def test_not_taken(expression: sp.Expr) -> None:
-    """The rule takes no equation of another form."""
     assert answers(trigonometric, problem(expression, angles=(U, W), lengths=(V,))) == []

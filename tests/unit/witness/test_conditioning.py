@@ -36,7 +36,6 @@ def described(chain: Chain, **stated: object) -> Mechanism:
 
 
 def planar(*sizes: float) -> Mechanism:
-    """Three links in a plane."""
     one, two, three = links(*sizes)
     chain = Rz(A1) * Tx(one) * Rz(A2) * Tx(two) * Rz(A3) * Tx(three)
     task = Task("xy", Turning.ABOUT_Z)

@@ -119,7 +119,6 @@ def changed(program: Program, change: Callable[[Let], Let]) -> Program:
 
 
 def nearly(let: Let) -> Let:
-    """Its sine is wrong by 1e-14 of itself."""
     return replace(let, value=let.value.replace(Atan2, lambda y, x: Atan2((1 + sp.Rational(1, 10**14)) * y, x)))
 
 

@@ -12,7 +12,7 @@ from derive.description.mechanism import Branch, Mechanism, Task
 from derive.description.remedies import with_remedy
 from derive.description.validate import validate
 from derive.frames import Rz, Tx
-from derive.ir.program import Output, Program, Require, Status
+from derive.ir.program import Output
 from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
@@ -21,26 +21,15 @@ from derive.solver.unsolved import Exhausted
 from derive.witness import Disagreement, inverse, witness
 from derive.work import STEPS, at_most
 from tests.mechanisms import kinematics_of, named
-from tests.unit.kinematics.inventions import A1, A2, ELBOW, L1, L2, described
+from tests.unit.kinematics.inventions import A1, A2, L1, L2, planar_arm
+from tests.unit.witness.test_witness import refusing
 
 
 @pytest.fixture(scope="module")
 def arm() -> Kinematics:
     """An arm with two links in a plane, said to be searched along its first joint: its slots are what they were."""
-    mechanism = described(
-        parameters=(L1, L2),
-        joints=(A1, A2),
-        chain=Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2),
-        task=Task("xy"),
-        branches=(ELBOW,),
-        offset_interface=False,
-    )
-    kinematics = build(validate(mechanism))
+    kinematics = build(validate(planar_arm()))
     return replace(kinematics, mechanism=replace(kinematics.mechanism, search=search(A1, where=L2)))
-
-
-def refusing(program: Program, condition: sp.Basic) -> Program:
-    return replace(program, body=(Require(condition, Status.UNREACHABLE), *program.body))
 
 
 def said_of(kinematics: Kinematics) -> str:
@@ -52,7 +41,6 @@ def said_of(kinematics: Kinematics) -> str:
 
 @pytest.mark.long
 def test_a_search_that_misses_solutions(arm: Kinematics, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One elbow is never found: half of the solutions."""
     monkeypatch.setattr(inverse, "_round_trip", lambda *_: 0.0)
     monkeypatch.setattr(inverse, "refused_when_planted", lambda *_: (0, 1))
     one_elbow = replace(arm, branch=refusing(arm.branch, sp.Gt(real("sigma_elbow"), 0)))
@@ -99,7 +87,6 @@ LONG_ARM = Mechanism(
 
 
 def steps(of: Callable[[Mechanism], object]) -> int:
-    """Those that it takes."""
     with at_most(inf, unit=STEPS) as work:
         of(validate(LONG_ARM))
     return work.done

@@ -9,7 +9,7 @@ from sympy import cos, pi, sin
 
 from derive.description.mechanism import Mechanism, Parameter, Task, length, linear, rod, rotary
 from derive.description.validate import validate
-from derive.frames import Ry, Rz, Tx, Ty, Tz
+from derive.frames import Ry, Rz, Ty, Tz
 from derive.ir.program import Status
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Called, Evidence
@@ -19,6 +19,7 @@ from derive.pipeline import derive_and_measure
 from derive.witness import roots, witness
 from derive.witness.closure import closure_of
 from derive.witness.samples import regular_samples
+from tests.unit.kinematics.inventions import planar_arm
 
 pytestmark = pytest.mark.slow
 
@@ -116,10 +117,7 @@ def test_no_solution_is_counted_before_it_is_found(unit: float) -> None:
 
 def test_a_solution_that_no_start_finds_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """The slots hold it, and the closure says that it is one."""
-    link = length("l1", "upper arm", nominal=300.0), length("l2", "forearm", nominal=200.0)
-    joints = tuple(rotary(f"A{k}", "turn") for k in (1, 2))
-    chain = Rz(joints[0]) * Tx(link[0]) * Rz(joints[1]) * Tx(link[1])
-    two = validate(Mechanism(name="Two", parameters=link, joints=joints, chain=chain, task=Task("xy")))
+    two = validate(planar_arm())
     monkeypatch.setattr("derive.witness.inverse.all_solutions", lambda p, _: [f[:1] for f in roots.all_solutions(p)])
     assert solutions(witness(build(two), two)) == 2
 

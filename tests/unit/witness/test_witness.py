@@ -23,7 +23,6 @@ def scara() -> Kinematics:
 
 
 def changed(program: Program, name: str, change: Change) -> Program:
-    """The program with another value of one output."""
     assert name in [o.name for o in program.outputs]
     outputs = (Output(o.name, change(o.value)) if o.name == name else o for o in program.outputs)
     return replace(program, outputs=tuple(outputs))
@@ -42,7 +41,6 @@ def refusing(program: Program, condition: sp.Basic) -> Program:
 
 
 def test_the_scara_agrees(scara: Kinematics) -> None:
-    """The witness agrees with the derived programs of a SCARA, and finds two solutions."""
     evidence = witness(scara, named(SCARA))
     assert evidence.poses == 144
     assert evidence.inverted is not None
@@ -138,7 +136,6 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
 
 @pytest.mark.parametrize("what", WRONG)
 def test_a_wrong_formula_is_refused(scara: Kinematics, what: str) -> None:
-    """The witness refuses each kind of wrong program with its own message."""
     message, spoil = WRONG[what]
     with pytest.raises(Disagreement) as refused:
         witness(spoil(scara), named(SCARA))
@@ -149,5 +146,4 @@ def test_a_wrong_formula_is_refused(scara: Kinematics, what: str) -> None:
 
 
 def test_measured_numbers_are_rounded_up_to_a_decade() -> None:
-    """Measured errors are rounded up to a power of ten, and are at least 1e-12."""
     assert [decade(v) for v in (0.0, 3e-16, 1e-12, 1.1e-12, 9e-11, 1e-10)] == [1e-12, 1e-12, 1e-12, 1e-11, 1e-10, 1e-10]
