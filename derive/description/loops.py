@@ -5,7 +5,7 @@ quantities with bounds or limits of their own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -33,6 +33,8 @@ class Rod:
     """The largest angle between the rod and its direction at the home pose, at its joint on the base (radians)."""
     plate_cone: sp.Expr | None = None
     """The largest angle between the rod and that direction at its joint on the plate (radians)."""
+    only_pulls: bool = False
+    """Whether it is a cable: see `Mechanism.load`."""
 
     @property
     def key(self) -> str:
@@ -102,6 +104,11 @@ def rod(
     return Rod(
         name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
     )
+
+
+def cable(name: str, anchor: Sequence[object], plate: Sequence[object], length: object) -> Rod:
+    """A rod that only pulls: where `Mechanism.load` would make it push, the inverse refuses the pose."""
+    return replace(rod(name, anchor, plate, length), only_pulls=True)
 
 
 def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:
