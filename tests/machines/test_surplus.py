@@ -110,6 +110,9 @@ def test_by_how_much_a_rod_misses(name: str) -> None:
     (surplus,), point = robot.SURPLUS, points_around(anchors, middle)[0]
     axes, start = np.array(axes_of(anchors, point)), point + 1.0
     length = distances(anchors, point)[surplus]
+    longer = axes + 3.0 * (np.arange(len(axes)) == surplus)
+    for one in (robot, robot.in_radians(), robot.with_base(((1.0, 2.0, 3.0 * (len(anchors[0]) > 2)), _EYE))):
+        assert one.misses(longer) == pytest.approx({robot.AXES[surplus].name: -3.0})
     holding = tuple(k for k in range(len(anchors)) if k != surplus)
     for axis in range(len(anchors)):
         for share in (-1.5e-3, 2e-4, 1.5e-3):
