@@ -52,6 +52,7 @@ from derive.description.loops import (
     limited,
     on_plate,
     rod,
+    surplus_notes,
 )
 from derive.geometry.frames import Chain
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
@@ -238,17 +239,18 @@ class Mechanism:
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The stated notes, after those that every machine with held joints has."""
+        """The stated notes, after those that every machine with held or surplus joints has."""
         names = [joint.name for joint in self.held_joints]
+        own = (*surplus_notes([joint.name for joint in self.surplus_joints]), *self.notes)
         if not names:
-            return self.notes
+            return own
         them = "it" if len(names) == 1 else "them"
         held = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
         return (
             f"{held}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
             "for the other axes. Margins tell how far these are from a singular pose; "
             "the Jacobian has a column for every axis.",
-            *self.notes,
+            *own,
         )
 
     @property
