@@ -14,7 +14,7 @@ loops: the parts of a closed loop: rods, planes that guide points, bounds and li
 mechanism: the mechanism with its task, and all names that a description uses
 places: the line of a description that is wrong
 quantity: joints and parameters as symbols in equations
-reach: arms that reach a common point; struts or cables that meet in one
+reach: arms that reach a common point; struts or cables that meet in one, surplus ones, their load
 remedies: what to do about a refusal whose own sentence does not say it
 validate: checks that refuse a wrong description before anything is derived
 """

@@ -22,6 +22,7 @@ _MANY: Mapping[str, tuple[str, str]] = {
     "bounds": ("Bound", "(bound(…),)"),
     "branches": ("Branch", '(branch("elbow", sin(A2), right=+1, left=-1),)'),
     "held": ("Joint", "(E1,)"),
+    "surplus": ("Joint", "(L4,)"),
     "drives": ("Drive", "(driven(A2, by=S2, start=Tx(D), tip=Ry(A2) * Tx(L)),)"),
     "limited": ("Limited", "(limited(…),)"),
     "constraints": ("Constraint", "(Constraint(L1 < L2, …),)"),
@@ -31,6 +32,7 @@ _MANY: Mapping[str, tuple[str, str]] = {
     "closure": ("", "(X - A1, Y - A2)"),
     "positive": ("", "(R,)"),
     "home": ("", "(0, 0, 0)"),
+    "load": ("", "(0, 0, -1)"),
 }
 """Fields that hold several values: the class of a value (none: an expression), and an example."""
 _ONE: Mapping[str, tuple[tuple[str, ...], str]] = {

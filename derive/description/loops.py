@@ -5,7 +5,7 @@ quantities with bounds or limits of their own.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -33,6 +33,8 @@ class Rod:
     """The largest angle between the rod and its direction at the home pose, at its joint on the base (radians)."""
     plate_cone: sp.Expr | None = None
     """The largest angle between the rod and that direction at its joint on the plate (radians)."""
+    only_pulls: bool = False
+    """Whether it is a cable: see `Mechanism.load`."""
 
     @property
     def key(self) -> str:
@@ -101,6 +103,21 @@ def rod(
         )
     return Rod(
         name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone
+    )
+
+
+def cable(name: str, anchor: Sequence[object], plate: Sequence[object], length: object) -> Rod:
+    """A rod that only pulls: where `Mechanism.load` would make it push, the inverse refuses the pose."""
+    return replace(rod(name, anchor, plate, length), only_pulls=True)
+
+
+def surplus_notes(names: Sequence[str]) -> tuple[str, ...]:
+    """The note of a machine with surplus rods. names: of their lengths."""
+    if not names:
+        return ()
+    return (
+        f"Surplus: {', '.join(names)}. The other rods hold the pose: forward kinematics takes them, and refuses axes "
+        "at which a surplus one misses by more than max_miss. Its miss is a row of the Jacobian: command zero for it.",
     )
 
 

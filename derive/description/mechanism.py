@@ -37,7 +37,23 @@ from derive.description.drives import Drive, driven, with_loops
 from derive.description.errors import DescriptionError
 from derive.description.fields import as_stated, expressions
 from derive.description.joints import Interval, Joint, Kind, arc, driving, helical, linear, rotary
-from derive.description.loops import ROTATION, Bound, Limited, Plane, Rod, X, Y, Z, bound, guide, limited, on_plate, rod
+from derive.description.loops import (
+    ROTATION,
+    Bound,
+    Limited,
+    Plane,
+    Rod,
+    X,
+    Y,
+    Z,
+    bound,
+    cable,
+    guide,
+    limited,
+    on_plate,
+    rod,
+    surplus_notes,
+)
 from derive.geometry.frames import Chain
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
 
@@ -49,9 +65,9 @@ __all__ = [
     "COORDINATE_NAMES", "ROTATION", "ROTATION_ENTRIES", "TURN", "Assembly", "Bound", "Branch", "Constraint",
     "DescriptionError", "Drive", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod",
     "Search", "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch",
-    "crossing", "coordinate", "coupling", "distance", "driven", "driving", "flag", "gear", "guide", "helical", "length",
-    "limited", "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search", "sign",
-    "signed_length", "transmission",
+    "cable", "crossing", "coordinate", "coupling", "distance", "driven", "driving", "flag", "gear", "guide", "helical",
+    "length", "limited", "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search",
+    "sign", "signed_length", "transmission",
 ]  # fmt: skip
 
 
@@ -149,6 +165,12 @@ class Mechanism:
     search: Search | None = None
     held: tuple[Joint, ...] = ()
     """The joints that the inverse leaves where the reference has them, of a machine with more joints than its task."""
+    surplus: tuple[Joint, ...] = ()
+    """The lengths of rods beyond those that hold the point or the platform: they follow from its pose, and forward
+    kinematics takes the other rods. Empty: those are chosen that leave the best conditioned ones."""
+    load: tuple[sp.Expr, ...] = ()
+    """The direction of the force on the tool, as (0, 0, -1), of a machine with cables: numbers, or parameters, which
+    are all zero for no load. The inverse refuses poses at which a cable would push."""
     drives: tuple[Drive, ...] = ()
     """The loops that move joints of the chain: `joints` has the actuators, and the chain what they move."""
     positive: tuple[sp.Expr, ...] = ()
@@ -172,7 +194,7 @@ class Mechanism:
     def __post_init__(self) -> None:
         for name, value in as_stated(vars(self)).items():
             object.__setattr__(self, name, value)
-        for what in ("positive", "closure", "home"):
+        for what in ("positive", "closure", "home", "load"):
             object.__setattr__(self, what, expressions(what, getattr(self, what)))
         object.__setattr__(self, "heading", None if self.heading is None else sp.sympify(self.heading))
         held = {joint.name for joint in self.held}  # a held joint keeps the turn of the reference: it needs no byte
@@ -194,18 +216,41 @@ class Mechanism:
         return tuple(j for j in self.joints if j.name not in names)
 
     @property
+    def surplus_joints(self) -> tuple[Joint, ...]:
+        """The lengths of surplus rods, in the order of the axes."""
+        names = {joint.name for joint in self.surplus}
+        return tuple(j for j in self.joints if j.name in names)
+
+    @property
+    def surplus_rods(self) -> tuple[Rod, ...]:
+        """The rods whose lengths are surplus, in the order of the axes."""
+        return tuple(r for j in self.surplus_joints for r in self.rods if j.symbol in r.length.free_symbols)
+
+    @property
+    def holding_rods(self) -> tuple[Rod, ...]:
+        """The rods that hold the point or the platform: all that are not surplus."""
+        surplus = self.surplus_rods
+        return tuple(rod for rod in self.rods if rod not in surplus)
+
+    @property
+    def cables(self) -> tuple[Rod, ...]:
+        """The rods that only pull."""
+        return tuple(rod for rod in self.rods if rod.only_pulls)
+
+    @property
     def all_notes(self) -> tuple[str, ...]:
-        """The stated notes, after those that every machine with held joints has."""
+        """The stated notes, after those that every machine with held or surplus joints has."""
         names = [joint.name for joint in self.held_joints]
+        own = (*surplus_notes([joint.name for joint in self.surplus_joints]), *self.notes)
         if not names:
-            return self.notes
+            return own
         them = "it" if len(names) == 1 else "them"
         held = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
         return (
             f"{held}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
             "for the other axes. Margins tell how far these are from a singular pose; "
             "the Jacobian has a column for every axis.",
-            *self.notes,
+            *own,
         )
 
     @property
@@ -264,6 +309,12 @@ class Mechanism:
         """All stated closure equations."""
         planes = (plane.equation for plane in self.guides)
         return (*self.closure, *planes, *(rod.equation for rod in self.rods))
+
+    @property
+    def holding_equations(self) -> tuple[sp.Expr, ...]:
+        """The equations that determine the pose at given joints: those of surplus rods are left out."""
+        planes = (plane.equation for plane in self.guides)
+        return (*self.closure, *planes, *(rod.equation for rod in self.holding_rods))
 
     @property
     def offers_points(self) -> bool:

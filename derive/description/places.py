@@ -22,6 +22,8 @@ _FIELDS = (
     (r"cannot name a family", ("family",)),
     (r"^periods", ("periods",)),
     (r"^held|held joints|too many: .* held=", ("held", "task")),
+    (r"^surplus", ("surplus",)),
+    (r"^load", ("load",)),
     (r"the task commands|commands no direction", ("task",)),
     (r"has no joints|joints? too many", ("joints",)),
     (r"offset_interface", ("offset_interface", "task")),
@@ -52,7 +54,7 @@ def line_of(path: Path, problem: str) -> int:
     said = (
         stated[field] for words, fields in _FIELDS if re.search(words, problem) for field in fields if field in stated
     )
-    if re.match(r"chain reads|closure reads|positive reads|periods|held", problem):
+    if re.match(r"chain reads|closure reads|positive reads|periods|held|surplus names|load", problem):
         return next(said, stated.get("", 1))
     return next(named, next(said, stated.get("", 1)))
 

@@ -1,15 +1,17 @@
-"""Arms that reach a common point, and struts or cables of variable length that meet in one."""
+"""Arms that reach a common point, and struts or cables of variable length: those that meet in one, and what a
+description may say of surplus ones and of a load.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
 from derive.description.branches import assembly
 from derive.description.dimensions import Constraint, coordinate
-from derive.description.joints import linear
-from derive.description.loops import rod
+from derive.description.joints import Joint, linear
+from derive.description.loops import cable, rod
 from derive.description.mechanism import Mechanism, Task, Vendor, X, Y, Z
 from derive.geometry.vectors import Vector, cross, dot, minus, triple, vector
 from derive.ir.program import Let
@@ -101,7 +103,10 @@ def three_to_a_point(
         summary=summary,
         parameters=tuple(p for place in places for p in place),
         joints=axes,
-        rods=tuple(rod(str(k), end, point, axis) for k, (end, axis) in enumerate(zip(fixed, axes, strict=True), 1)),
+        rods=tuple(
+            (cable if what == "cable" else rod)(str(k), end, point, axis)
+            for k, (end, axis) in enumerate(zip(fixed, axes, strict=True), 1)
+        ),
         task=Task("xyz"),
         positive=axes,
         assembly=assembly(
@@ -122,3 +127,35 @@ def three_to_a_point(
             f"from which the {what}s 1, 2 and 3 go round clockwise.",
         ),
     )
+
+
+def is_own_length(mechanism: Mechanism, joint: Joint) -> bool:
+    """Whether one rod alone reads a joint, and no other joint: in its length, not in its ends. The rod has no cones."""
+    joints, symbol = {j.symbol for j in mechanism.joints}, joint.symbol
+    own = [rod for rod in mechanism.rods if joints & rod.equation.free_symbols == {symbol}]
+    if len(own) != 1 or own[0].base_cone is not None or own[0].plate_cone is not None:
+        return False  # a cone is about the leg at the home pose, which holding rods alone have
+    if sum(symbol in e.free_symbols for e in mechanism.equations) != 1:
+        return False
+    at_ends = {s for v in (*own[0].base, *own[0].plate) for s in v.free_symbols}
+    return symbol not in at_ends and symbol not in sp.diff(own[0].length, symbol).free_symbols
+
+
+def wrong_surplus(mechanism: Mechanism) -> Iterator[str]:
+    """What is wrong with the surplus joints that are stated."""
+    for joint in mechanism.surplus:
+        if joint.name not in {j.name for j in mechanism.joints}:
+            yield f"surplus names {joint.name!r}, which is no joint of this mechanism"
+        elif not is_own_length(mechanism, joint):
+            yield f"surplus joint {joint.name!r} must be the length of one rod without cones, and occur nowhere else"
+
+
+def wrong_load(mechanism: Mechanism) -> Iterator[str]:
+    """What is wrong with the load."""
+    if not mechanism.load:
+        return
+    if not mechanism.cables:
+        yield "load= is for rods that only pull: state them by cable(...)"
+    elif len(mechanism.load) != len(mechanism.cables[0].plate):
+        width = len(mechanism.cables[0].plate)
+        yield f"load= has {len(mechanism.load)} coordinates, and the ends of the cables have {width}"

@@ -42,6 +42,8 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"which is not the motor of an earlier joint", "list the joint whose motor is read before this one"),
     (r"^held names", "hold a joint that joints=(…) lists"),
     (r"held joints need a chain", "leave out held=, or state the loop as a chain"),
+    (r"^surplus (names|joint)", "name lengths of rods alone, or leave out surplus=: it is then chosen"),
+    (r"^load= has", "as in load=(0, 0, -1), or load=(0, -1) in the plane"),
     (r"periods (names|must name)", "leave out periods=: the order of the axes is taken"),
     (r"needs either a chain or closure", "state chain=Rz(A1) * Tx(L1) * …, or rods=(…) of a closed loop"),
     (r"it must be coordinates in the order", 'as in task=Task("xyz")'),

@@ -24,6 +24,7 @@ from derive.description.mechanism import (
     Y,
     Z,
 )
+from derive.description.reach import wrong_load, wrong_surplus
 from derive.ir.constants import DEGREE
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
@@ -53,6 +54,8 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
     for joint in mechanism.joints:
         yield from _joint(mechanism, joint)
     yield from _held(mechanism)
+    yield from wrong_surplus(mechanism)
+    yield from wrong_load(mechanism)
     yield from _periods(mechanism)
     yield from wrong_amounts(mechanism)
     yield from _shape(mechanism)
@@ -306,6 +309,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
         *_equations(mechanism),
         *((f"branch {b.name!r}", b.indicator) for b in mechanism.branches),
         *(("positive", sp.sympify(e)) for e in mechanism.positive),
+        *(("load", e) for e in mechanism.load),
         *((f"limited quantity {q.name!r}", q.value) for q in mechanism.limited),
         *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
     ]

@@ -19,7 +19,7 @@ from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics, Reals
 from derive.kinematics.sampling import sample_axes
 from derive.plate.plate import home_position
-from derive.report.reference_calls import Machine, branches
+from derive.report.reference_calls import Machine, branches, fitted
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 """Values of the rotary axes at which a configuration is shown, tried in this order."""
@@ -162,7 +162,7 @@ def _candidates(machine: Machine, drawn: Pose) -> Iterator[Reals]:
         shown = zip(mechanism.joints, drawn.axes, strict=True)  # beside loops in its chain a machine is seen as before
         columns = [sampled[j.axis.name] if j.loops or not mechanism.drives else np.full(_SAMPLED, a) for j, a in shown]
         rows = np.round(np.stack(columns, axis=1), 1)
-        yield from (tuple(row) for row in rows.tolist())
+        yield from fitted(machine, [tuple(row) for row in rows.tolist()])
 
 
 def _pair(scene: Callable[[], Scene], pose: Pose, index: int, into: Machine) -> _Pair | None:

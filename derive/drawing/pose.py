@@ -17,7 +17,7 @@ from derive.ir.program import Output, Status
 from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.parameters import shown_values
 from derive.kinematics.sampling import sample_axes
-from derive.report.reference_calls import FRAME, Machine, are_inside, forward, machine_with, margins
+from derive.report.reference_calls import FRAME, Machine, are_inside, fitted, forward, machine_with, margins
 
 _SAMPLES, _SEED = 3000, 3
 _DECIMALS = 3
@@ -84,7 +84,7 @@ def _candidates(machine: Machine) -> Iterator[Pose | None]:
     zero = pose_at(machine, (0.0,) * len(mechanism.joints))
     if zero is not None and (mechanism.chain is not None or _is_usual(machine, zero)):
         yield zero
-    yield pose_at(machine, tuple(j.shown for j in mechanism.joints))
+    yield pose_at(machine, *fitted(machine, [tuple(j.shown for j in mechanism.joints)]))
     yield _most_regular(machine)
 
 
@@ -93,10 +93,11 @@ def _most_regular(machine: Machine) -> Pose | None:
     mechanism = machine.kinematics.mechanism
     drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, _SEED)
     axes = np.stack([np.round(drawn[j.axis.name], _DECIMALS) for j in mechanism.joints], axis=1)
-    least = np.min(np.abs(margins(machine, [tuple(row) for row in axes.tolist()])), axis=0)
+    rows = fitted(machine, [tuple(row) for row in axes.tolist()])
+    least = np.min(np.abs(margins(machine, rows)), axis=0)
     if np.isnan(least).all():
         return None
-    return pose_at(machine, tuple(axes[int(np.nanargmax(least))].tolist()))
+    return pose_at(machine, rows[int(np.nanargmax(least))])
 
 
 def _is_usual(machine: Machine, pose: Pose) -> bool:

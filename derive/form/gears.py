@@ -208,6 +208,7 @@ def in_other_joints(mechanism: Mechanism, table: Table) -> Mechanism:
         limited=tuple(Limited(q.name, of(q.value), q.is_angle, q.meaning) for q in mechanism.limited),
         search=None if search is None else replace(search, joint=_same(search.joint, mechanism)),
         held=tuple(_same(j, mechanism) for j in mechanism.held),
+        surplus=tuple(_same(j, mechanism) for j in mechanism.surplus),
     )
 
 

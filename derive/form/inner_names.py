@@ -23,6 +23,7 @@ from derive.ir.symbols import (
     DETERMINANT,
     FLANGE_AXIS,
     HEADING,
+    MAX_MISS,
     MIN_TYPE2_MARGIN,
     OFFSET,
     POSITION,
@@ -51,7 +52,7 @@ _SHARED = frozenset(
         *(ASSEMBLY_SIGN, DETERMINANT, HEADING, SCALE, *POSITION, *ROTATION_ENTRIES, *OFFSET),
         *(*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, TRIED, SIDE),
     )
-) | {"check_limits", "warning_distance", "tie", "searched", "found", CHECK_FORWARD, MIN_TYPE2_MARGIN, REFUSAL}
+) | {"check_limits", "warning_distance", "tie", "searched", "found", CHECK_FORWARD, MAX_MISS, MIN_TYPE2_MARGIN, REFUSAL}
 """Inputs and outputs of the programs of every mechanism."""
 _WORDS = frozenset(
     """

@@ -22,6 +22,8 @@ ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
 SQUARES = sp.Float("1e-15")
 """The rounding of a sum of squares of lengths, as a share of the squared scale of the machine."""
+LARGEST_MISS = sp.Float("1e-3")
+"""A surplus rod fits a pose where it misses by at most this share of its length, unless a length is given."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")

@@ -134,6 +134,8 @@ SCALE = real("machine_scale")
 MIN_TYPE2_MARGIN = "min_type2_margin"
 CHECK_FORWARD = "check_forward"
 """Whether the inverse refuses a pose that forward kinematics from the home pose does not find again."""
+MAX_MISS = "max_miss"
+"""The largest length by which a surplus rod may miss the pose of the others."""
 DETERMINANT = real("determinant")
 POSITION = tuple(map(real, COORDINATE_NAMES))
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)

@@ -41,6 +41,7 @@ from derive.kinematics.search.programs import GOAL
 from derive.kinematics.shared_names import SharedName, refuse_names, refuse_shared_names, with_free_names
 from derive.kinematics.solution import Solved, prepared, solve_machine
 from derive.plate.newton import found_again
+from derive.plate.tension import tension_checks
 from derive.plate.turning import joints_at_home
 from derive.solver.unsolved import Unsolved
 
@@ -160,6 +161,7 @@ def _last(
 ) -> tuple[Statement, ...]:
     """The checks of a solution of the inverse, besides the closure."""
     closure = (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
+    closure += tension_checks(mechanism, offset)
     return (*mirror_checks(mechanism, statements), *closure)
 
 

@@ -25,6 +25,7 @@ from derive.ir.reason import Why, about_machine
 from derive.ir.symbols import COORDINATE_NAMES, DETERMINANT, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
 from derive.plate.legs import RADIUS, Leg, leg_symbol, legs_of, names, rotation_axes, rotation_of, rows
 from derive.plate.newton import legs_at_pose
+from derive.plate.surplus import MISS, miss_row, misses_of
 from derive.work import stage
 
 _ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
@@ -46,8 +47,14 @@ _TURNS: dict[Turning, tuple[str, ...]] = {
 
 
 def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
-    """The rows of the task: commanded positions, then the commanded rotation."""
-    return (*mechanism.task.position, *_TURNS[mechanism.task.turning])
+    """The rows of the task: commanded positions, then the commanded rotation, then the misses of surplus rods."""
+    own = (*mechanism.task.position, *_TURNS[mechanism.task.turning])
+    return (*own, *map(miss_row, mechanism.surplus_joints))
+
+
+def is_of_length(row: str) -> bool:
+    """Whether a row of the Jacobian is in lengths: a coordinate, or the miss of a surplus rod."""
+    return row in COORDINATE_NAMES or row.startswith(MISS)
 
 
 @stage("the Jacobian")
@@ -176,7 +183,7 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     """The Jacobian of stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; type 2 singular where det A
     = 0. A heading follows from the joints alone.
     """
-    closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
+    closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.holding_equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
     heading = sp.Integer(0) if mechanism.heading is None else mechanism.heading
     turned = closure.xreplace({cosine(HEADING): sp.cos(heading), sine(HEADING): sp.sin(heading)})
@@ -187,7 +194,8 @@ def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]
     if by_pose.rows != by_pose.cols:
         raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
     matrix, statements = _solved(mechanism, by_pose, by_joints)
-    return matrix.col_join(own_row), statements
+    misses, more = misses_of(mechanism, matrix)
+    return matrix.col_join(own_row).col_join(misses), (*statements, *more)
 
 
 def _solved(mechanism: Mechanism, by_pose: sp.Matrix, by_joints: sp.Matrix) -> tuple[sp.Matrix, tuple[Statement, ...]]:
@@ -254,8 +262,10 @@ def _platform_program(name: str, rows: Sequence[str], mechanism: Mechanism, forw
     motors = _motor_matrix(mechanism)
     solved, twists = _platform_twists(mechanism, motors)
     known = _by_rows(mechanism, twists, motors.cols)
+    missed, lets = misses_of(mechanism, sp.Matrix(len(twists) // motors.cols, motors.cols, twists), motors)
+    known |= dict(zip(map(miss_row, mechanism.surplus_joints), missed.tolist(), strict=True))
     entries = [e for row in rows for e in known.get(row, [sp.Integer(0)] * motors.cols)]
-    return normalise(name, (*forward.statements, *solved), entries_of(entries, motors.cols))
+    return normalise(name, (*forward.statements, *solved, *lets), entries_of(entries, motors.cols))
 
 
 def platform_velocities(
@@ -280,10 +290,15 @@ def platform_velocities(
     rates = zip((*map(real, position), *rotation), (*twists[: len(position)], *turned), strict=True)
     moving = {name: rate for name, rate in rates if name.is_Symbol}
     joints = [j.symbol for j in mechanism.joints]
-    for rod in mechanism.rods:  # its length is what its joint says: it is never too short at a pose that was found
+    for (
+        rod
+    ) in mechanism.holding_rods:  # its length is what its joint says: it is never too short at a pose that was found
         (changed,) = sp.Matrix([with_fixed_names(mechanism, rod.length)]).jacobian(joints) * speeds
         moving |= {leg_symbol("divisor", rod): changed} if changed != 0 else {}
-    return (*found, *lines, *solved), moving, {row: e for row, (e,) in _by_rows(mechanism, twists, 1).items()}
+    missed, lets = misses_of(mechanism, sp.Matrix(twists), speeds)
+    rows_found = {row: e for row, (e,) in _by_rows(mechanism, twists, 1).items()}
+    rows_found |= dict(zip(map(miss_row, mechanism.surplus_joints), missed, strict=True))
+    return (*found, *lines, *solved, *lets), moving, rows_found
 
 
 def _platform_twists(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:

@@ -35,6 +35,7 @@ from derive.ir.symbols import (
 from derive.kinematics.inverse import Inverse
 from derive.plate.legs import about_z
 from derive.plate.passive import at_the_pose
+from derive.plate.surplus import miss_checks
 from derive.plate.turning import forward_from_start
 from derive.solver.derivation import Derivation
 from derive.solver.solve import solve
@@ -60,7 +61,8 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     derivation = solve_for_position(mechanism)
     determinant = derivation.determinants[0] if derivation.determinants else None
     turned = [let for let in heading_at_joints(mechanism) if let not in trigonometric]
-    known = (*checks, *fixed_lets(mechanism), *trigonometric, *turned, *_in_assembly_mode(derivation, mechanism))
+    solved = (*_in_assembly_mode(derivation, mechanism), *miss_checks(mechanism))
+    known = (*checks, *fixed_lets(mechanism), *trigonometric, *turned, *solved)
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
     rotation = sp.eye(3) if mechanism.heading is None else about_z(cosine(HEADING), sine(HEADING))
     return Forward(known, position_values, tuple(rotation), determinant)

@@ -19,7 +19,9 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
+from derive.ir.constants import LARGEST
 from derive.ir.program import Program, Status, shared
+from derive.ir.symbols import MAX_MISS
 
 if TYPE_CHECKING:  # the witness reads programs alone, and nothing of how they were derived is loaded with it
     from derive.kinematics.solution import Solution
@@ -231,7 +233,8 @@ class Kinematics:
     @property
     def unlimited_values(self) -> dict[str, float]:
         """The inputs of the machine by which formulas are measured: without limits, so that every pose counts."""
-        return {p.name: 0.0 if p.name in self.limit_inputs else p.tested for p in self.parameters}
+        unlimited = dict.fromkeys(self.limit_inputs, 0.0) | {MAX_MISS: float(LARGEST)}
+        return {p.name: unlimited.get(p.name, p.tested) for p in self.parameters}
 
     @property
     def limited(self) -> tuple[Limited, ...]:

@@ -16,9 +16,9 @@ from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Statement, Status
-from derive.ir.symbols import COORDINATE_NAMES, SCALE, real
+from derive.ir.symbols import SCALE, real
 from derive.kinematics.branches.assignment import Assignment
-from derive.kinematics.differential import jacobian_rows
+from derive.kinematics.differential import is_of_length, jacobian_rows
 from derive.kinematics.kinematics import Margin
 from derive.kinematics.parameters import has_length
 from derive.kinematics.sampling import ENOUGH, possible_axes, sample_machine, size_of
@@ -95,7 +95,7 @@ def _scaled_jacobian(
     rows, columns = jacobian_rows(mechanism), mechanism.joints
     flat = np.stack([np.broadcast_to(v, (count,)) for v in entries.values()], axis=-1)
     size = size_of(mechanism, samples)
-    by_rows = np.array([1.0 / size if row in COORDINATE_NAMES else 1.0 for row in rows])
+    by_rows = np.array([1.0 / size if is_of_length(row) else 1.0 for row in rows])
     by_columns = np.array([1.0 if j.axis_is_angle else size for j in columns])
     matrix = flat.reshape(count, len(rows), len(columns)) * by_rows[:, None] * by_columns
     return np.asarray(matrix[:, :, [j in mechanism.solved_joints for j in columns]])

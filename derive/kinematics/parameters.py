@@ -17,7 +17,7 @@ from derive.ir.passes import plain, without_assumptions
 from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Output, Program, Require, Statement, Status
 from derive.ir.reason import Reason, about_parameters
-from derive.ir.symbols import CHECK_FORWARD, MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
+from derive.ir.symbols import CHECK_FORWARD, MAX_MISS, MIN_TYPE2_MARGIN, SCALE, compared, flag, is_count, real
 from derive.ir.verify import verify
 from derive.plate.plate import home_branches, machine_constants, machine_statements
 
@@ -45,6 +45,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
             meaning = f"{word} limit of {quantity.meaning}, both 0: no limit"
             parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
     parameters += _assembly_parameters(mechanism)
+    parameters += [_max_miss()] if mechanism.surplus else []
     check = Parameter(
         flag(CHECK_LIMITS),
         CHECK_LIMITS,
@@ -70,7 +71,8 @@ def shown_values(mechanism: Mechanism) -> dict[str, float]:
 
 def unlimited_values(mechanism: Mechanism) -> dict[str, float]:
     """The inputs of the machine by which formulas are measured: without limits, so that every pose counts."""
-    return shown_values(mechanism) | {end: 0.0 for window in windows(mechanism) for end in window.given}
+    any_miss = {MAX_MISS: float(LARGEST)} if mechanism.surplus else {}
+    return shown_values(mechanism) | {end: 0.0 for window in windows(mechanism) for end in window.given} | any_miss
 
 
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
@@ -100,6 +102,11 @@ def _check_forward() -> Parameter:
     """Whether the inverse asks forward kinematics for the pose of the axes that it has found."""
     meaning = "inverse kinematics refuses a pose that forward kinematics from the home pose does not find again"
     return Parameter(flag(CHECK_FORWARD), CHECK_FORWARD, Role.FLAG, meaning, "", 0.0, 1.0, False, 1.0, 1.0)
+
+
+def _max_miss() -> Parameter:
+    meaning = "largest length by which a surplus rod may miss the pose of the others; 0: a thousandth of its length"
+    return Parameter(real(MAX_MISS), MAX_MISS, Role.DISTANCE, meaning, "u", 0.0, float(LARGEST), False, 0.0, 0.0)
 
 
 def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:

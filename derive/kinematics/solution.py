@@ -33,6 +33,7 @@ from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
 from derive.plate.stated_rods import with_fixed_point, with_positive_lengths, with_stated_rods
+from derive.plate.surplus import with_surplus
 
 _MOTOR = "motor_"
 
@@ -81,6 +82,7 @@ Solution = Solved | Searched
 def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> Mechanism:
     """The mechanism as it is derived: in its one form, with its rods recognised, whose lengths are positive."""
     mechanism = in_form(mechanism, further)
+    mechanism = with_surplus(mechanism, len(mechanism.solved_joints) - len(jacobian_rows(mechanism)))
     check_joints(mechanism)
     return with_positive_lengths(with_stated_rods(with_fixed_point(mechanism)))
 
@@ -131,7 +133,7 @@ def _wrong_number(mechanism: Mechanism, spare: int, commanded: str) -> str:
     names = "the one that is" if spare == 1 else "those that are"
     remedy = f"name {names} held at the reference: held=({joints[0].name},)"
     if mechanism.chain is None:  # in a closed loop every joint follows from the pose
-        remedy = "command more of the pose, or leave out joints"
+        remedy = "command more of the pose, or leave out joints: lengths of rods alone may be surplus"
     return (
         f"{number} too many: the task commands {commanded}, and {len(mechanism.solved_joints)} joints are to be solved "
         f"for; {remedy}"

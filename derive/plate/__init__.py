@@ -8,5 +8,7 @@ newton: the pose by Newton's method on the lengths of the rods
 passive: the coordinates that the loop moves but the task does not command
 plate: the home pose, and the checks of the inverse
 stated_rods: stated equations that are rods, or planes, whatever their form; lengths of rods that are positive
+surplus: rods beyond those that hold a point or a platform: which they are, and whether they fit
+tension: cables only pull: the tensions under a load
 turning: forward kinematics by iteration, the joints at the home pose, sampled poses
 """

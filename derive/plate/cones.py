@@ -28,13 +28,13 @@ _BEYOND = {"base": Why.BEYOND_BASE_CONE, "plate": Why.BEYOND_PLATE_CONE}
 def cone_axes(mechanism: Mechanism, home_rotation: sp.Matrix) -> tuple[Let, ...]:
     """The axes of the cones on the plate, in its frame. Those on the base are the rods' directions at the home pose."""
     back = home_rotation.T
-    rods = (rod for rod in mechanism.rods if rod.plate_cone is not None)
+    rods = (rod for rod in mechanism.holding_rods if rod.plate_cone is not None)
     return tuple(let for rod in rods for let in turned(back, names("along", rod), names(_SEEN, rod)))
 
 
 def cone_constants(mechanism: Mechanism) -> Iterator[Output]:
     """The axes of all cones as outputs, for other programs."""
-    for rod in mechanism.rods:
+    for rod in mechanism.holding_rods:
         for cone, axis, source in ((rod.base_cone, _HOME, "along"), (rod.plate_cone, _SEEN, _SEEN)):
             if cone is not None:
                 yield from (Output(n.name, s) for n, s in zip(names(axis, rod), names(source, rod), strict=True))
@@ -42,11 +42,11 @@ def cone_constants(mechanism: Mechanism) -> Iterator[Output]:
 
 def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The conditions on the directions of the rods at a solved pose."""
-    on_base = [(rod, rod.base_cone) for rod in mechanism.rods if rod.base_cone is not None]
-    on_plate = [(rod, rod.plate_cone) for rod in mechanism.rods if rod.plate_cone is not None]
+    on_base = [(rod, rod.base_cone) for rod in mechanism.holding_rods if rod.base_cone is not None]
+    on_plate = [(rod, rod.plate_cone) for rod in mechanism.holding_rods if rod.plate_cone is not None]
     rotation = rotation_of(mechanism)
     taken = (let for rod, _ in on_plate for let in turned(rotation, names(_SEEN, rod), names(_TURNED, rod)))
-    vectors = {rod.name: names(vector_word(mechanism, rod), rod) for rod in mechanism.rods}
+    vectors = {rod.name: names(vector_word(mechanism, rod), rod) for rod in mechanism.holding_rods}
     return (*_inside("base", on_base, vectors, _HOME), *taken, *_inside("plate", on_plate, vectors, _TURNED))
 
 

@@ -66,8 +66,8 @@ def about_z(cos_value: sp.Expr, sin_value: sp.Expr) -> sp.Matrix:
 
 
 def legs_of(mechanism: Mechanism) -> tuple[Leg, ...]:
-    """All legs of the platform: the rods, then the planes."""
-    return (*mechanism.rods, *mechanism.guides)
+    """The legs that hold the platform: the rods, then the planes."""
+    return (*mechanism.holding_rods, *mechanism.guides)
 
 
 def names(word: str, leg: Leg) -> tuple[sp.Symbol, ...]:
@@ -201,7 +201,7 @@ def rows(mechanism: Mechanism, vectors: Sequence[str] | None = None) -> tuple[sp
     """The names of the entries of A, by rows. With the words of the rods' vectors each row is multiplied by the
     length of its leg.
     """
-    words = [*(vectors or ["along"] * len(mechanism.rods)), *[NORMAL] * len(mechanism.guides)]
+    words = [*(vectors or ["along"] * len(mechanism.holding_rods)), *[NORMAL] * len(mechanism.guides)]
     return tuple(
         entry
         for leg, word in zip(legs_of(mechanism), words, strict=True)

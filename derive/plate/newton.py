@@ -63,6 +63,7 @@ from derive.plate.legs import (
     with_note,
 )
 from derive.plate.passive import completed
+from derive.plate.surplus import miss_checks
 
 SEARCH = "find_platform"
 """The name of the program."""
@@ -151,7 +152,7 @@ def found_from(mechanism: Mechanism, start: Start) -> Forward:
     lets = (*joint_lets(mechanism), *_bases(mechanism)[0])
     pose = (Let(name, _found(name)) for name in (*_position(mechanism), *_rotation_names(mechanism)))
     axes = finite([j.axis for j in mechanism.joints])
-    statements = (*axes, *start.statements, *lets, _call(mechanism, start), *pose)
+    statements = (*axes, *start.statements, *lets, _call(mechanism, start), *pose, *miss_checks(mechanism))
     return Forward(statements, position_of(mechanism), tuple(rotation_of(mechanism)))
 
 
@@ -258,7 +259,7 @@ def _turn(mechanism: Mechanism) -> sp.Matrix:
 
 def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
     """The base joints of the rods and their lengths, with names for every sine and cosine."""
-    ends = (v for rod in mechanism.rods for v in (*rod.base, rod.length))
+    ends = (v for rod in mechanism.holding_rods for v in (*rod.base, rod.length))
     values = [with_fixed_names(mechanism, v) for v in (*ends, *(plane.offset for plane in mechanism.guides))]
     lets, named = named_trigonometry(mechanism, values)
     return (*fixed_lets(mechanism), *lets), named
@@ -272,7 +273,7 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
         lets += with_note(turn, "rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)")
     values = iter(bases[1])
-    for rod in mechanism.rods:
+    for rod in mechanism.holding_rods:
         base, wanted = [next(values) for _ in rod.base], next(values)
         arm, word = names("arm", rod), vector_word(mechanism, rod)
         lets += turned(_turn(mechanism), names("start_arm", rod), arm)

@@ -67,7 +67,7 @@ def machine_statements(mechanism: Mechanism, at_home: Sequence[Statement] = ()) 
 
     at_home: the statements that bind the joints at the home pose, `home_cos_a1`, where joints move ends of rods.
     """
-    later = (rod for rod in mechanism.rods if is_driven(mechanism, rod.base))
+    later = (rod for rod in mechanism.holding_rods if is_driven(mechanism, rod.base))
     return (
         *platform_size(mechanism),
         *at_home,
@@ -101,7 +101,7 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 def home_branches(mechanism: Mechanism) -> tuple[Branch, ...]:
     """The branches on which the lines of the legs at the home pose depend."""
-    is_needed = is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base])
+    is_needed = is_driven(mechanism, [v for rod in mechanism.holding_rods for v in rod.base])
     return mechanism.branches if is_needed else ()
 
 
@@ -130,7 +130,7 @@ def check_home(mechanism: Mechanism) -> None:
         of_what = "that it moves" if mechanism.passive else "of the task"
         raise DescriptionError(
             f"a platform that a loop turns needs a rod for each of the {count} quantities {of_what}: "
-            f"it has {len(mechanism.rods)} rods{held}{_no_rods(mechanism)}"
+            f"it has {len(mechanism.holding_rods)} rods{held}{_no_rods(mechanism)}"
         )
     for leg in legs:
         if is_driven(mechanism, point_of(leg)):
@@ -188,7 +188,7 @@ def home_position(mechanism: Mechanism) -> tuple[sp.Expr, ...]:
 
 
 def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
-    points = [point_of(rod) for rod in mechanism.rods]
+    points = [point_of(rod) for rod in mechanism.holding_rods]
     centre = tuple(real(f"centre_{c}") for c, _ in zip(COORDINATE_NAMES, points[0], strict=False))
     means = (sp.Add(*column) / len(points) for column in zip(*points, strict=True))
     squares = [(c - m) ** 2 for point in points for c, m in zip(point, centre, strict=True)]
@@ -202,7 +202,7 @@ def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
 
 def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The lengths of the legs at the home pose: where one is a joint, it follows from the pose."""
-    rods = mechanism.rods
+    rods = mechanism.holding_rods
     fixed = [rod for rod in rods if not is_driven(mechanism, rod.base)]
     measured = [rod for rod in fixed if is_driven(mechanism, [rod.length])]
     lengths = tuple(leg_symbol("length", rod) for rod in rods)
@@ -233,7 +233,7 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The lines of the legs at the home pose, and the sign of their determinant."""
     lines = (
         row(mechanism, rod, names("home_arm", rod), leg_symbol("length", rod), vector_word(mechanism, rod))
-        for rod in mechanism.rods
+        for rod in mechanism.holding_rods
     )
     planes = (plane_row(mechanism, plane, names("home_arm", plane), plane.normal) for plane in mechanism.guides)
     return (
@@ -285,7 +285,7 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     """
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
-    for rod in mechanism.rods:
+    for rod in mechanism.holding_rods:
         arm, word = names("arm", rod), vector_word(mechanism, rod)
         base = [
             polynomial(with_fixed_names(mechanism, v), all_angles(mechanism), signs_of(mechanism))
@@ -306,13 +306,13 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         lets += [let for let in vectors if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     lengths = sp.Mul(
-        *[leg_symbol("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.rods]
+        *[leg_symbol("divisor", r) if is_driven(mechanism, [r.length]) else r.length for r in mechanism.holding_rods]
     )
     of_spans = real("determinant_of_spans")
-    words = [vector_word(mechanism, rod) for rod in mechanism.rods]
+    words = [vector_word(mechanism, rod) for rod in mechanism.holding_rods]
     return (
         *lets,
-        *(_long_enough(rod) for rod in mechanism.rods if is_driven(mechanism, [rod.length])),
+        *(_long_enough(rod) for rod in mechanism.holding_rods if is_driven(mechanism, [rod.length])),
         *cone_checks(mechanism),
         Solve((), rows(mechanism, words), (), of_spans, "determinant of the spans of the legs and their moments"),
         Let(

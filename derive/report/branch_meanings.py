@@ -66,6 +66,8 @@ def _assembly(kinematics: Kinematics) -> Iterator[str]:
 def _positions(kinematics: Kinematics, parameter: str) -> str:
     """Both positions of the nominal machine at the same axes; empty if no such axes were found."""
     nominal = kinematics.unlimited_values
+    if kinematics.mechanism.surplus:  # a surplus rod fits one of both at most
+        return ""
     machines = [machine_with(kinematics, nominal | {parameter: second}) for second in (0.0, 1.0)]
     for axes in _candidates(machines[0]):
         found = [forward(machine, axes) for machine in machines]

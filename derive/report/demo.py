@@ -11,7 +11,7 @@ from derive.ir.interpret import Array
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.sampling import sample_axes, size_of
-from derive.report.reference_calls import Machine, are_inside, branches_at, forward, margins
+from derive.report.reference_calls import Machine, are_inside, branches_at, fitted, forward, margins
 
 _SAMPLES, _SEED, _TRIED = 400, 4, 40
 """The poses that are sampled, and how many of the most regular ones are tried as a beginning."""
@@ -64,7 +64,7 @@ def _regular(machine: Machine) -> Iterator[Reals]:
     """Sampled axis values, the most regular pose first."""
     mechanism = machine.kinematics.mechanism
     drawn = sample_axes(mechanism, dict(machine.values), _SAMPLES, _SEED)
-    rows = [tuple(row) for row in np.stack([drawn[j.axis.name] for j in mechanism.joints], axis=1).tolist()]
+    rows = fitted(machine, [tuple(row) for row in np.stack([drawn[j.axis.name] for j in mechanism.joints], 1).tolist()])
     least = np.nan_to_num(np.min(np.abs(margins(machine, rows)), axis=0), nan=-1.0)
     return (rows[k] for k in np.argsort(-least, kind="stable")[:_TRIED])
 

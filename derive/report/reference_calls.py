@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.equations.rotation_repair import rotation_program
-from derive.ir.constants import COINCIDENT, EDGE, TIE
+from derive.ir.constants import COINCIDENT, EDGE, LARGEST, TIE
 from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
 from derive.ir.program import Program, Status
-from derive.ir.symbols import ROTATION_ENTRIES, branch_sign
+from derive.ir.symbols import MAX_MISS, ROTATION_ENTRIES, branch_sign
 from derive.kinematics.kinematics import Bytes, Kinematics, Reals
 from derive.kinematics.parameters import TIE_OF_LENGTHS
 from derive.kinematics.sampling import size_of
@@ -174,6 +174,33 @@ def _solved(machine: Machine, slots: Sequence[Bytes], given: Sequence[Array]) ->
     status = np.where(refused == Status.OK, status, refused)
     rows = [[float(found[j.axis.name][k]) for j in joints] for k in range(len(slots))]
     return [machine.rounded(r) if s is Status.OK else nothing for r, s in zip(rows, status, strict=True)], list(status)
+
+
+def fitted(machine: Machine, poses: Sequence[Reals]) -> list[Reals]:
+    """Axis values at which surplus rods fit the pose of the others, where there is one: those of a loop without any are
+    unchanged.
+    """
+    kinematics = machine.kinematics
+    surplus = [j in kinematics.mechanism.surplus_joints for j in kinematics.mechanism.joints]
+    if not any(surplus):
+        return list(poses)
+    loose = with_any_miss(machine)
+    found = [(k, *pose) for k, (status, *pose) in enumerate(forward_at(loose, poses)) if status is Status.OK]
+    if not found:
+        return list(poses)
+    rows, frames, own = zip(*found, strict=True)
+    slots = [configuration[: len(kinematics.branches)] for configuration in own]
+    axes, statuses = branches_at(loose, frames, slots, [poses[k] for k in rows])
+    lengths = {k: row for k, row, status in zip(rows, axes, statuses, strict=True) if status is Status.OK}
+    chosen = (zip(lengths.get(k, pose), pose, surplus, strict=True) for k, pose in enumerate(poses))
+    return [tuple(length if is_surplus else value for length, value, is_surplus in one) for one in chosen]
+
+
+def with_any_miss(machine: Machine) -> Machine:
+    """The machine with surplus rods that may have any length."""
+    if not machine.kinematics.mechanism.surplus:
+        return machine
+    return machine_with(machine.kinematics, {**machine.given, MAX_MISS: float(LARGEST)})
 
 
 def are_inside(machine: Machine, axes: Mapping[str, Array]) -> NDArray[np.bool_]:

@@ -16,10 +16,11 @@ from derive.description.mechanism import DescriptionError, Joint, Role
 from derive.ir.constants import LARGEST, SINGULAR
 from derive.ir.interpret import Array
 from derive.ir.program import Status
+from derive.ir.symbols import MAX_MISS
 from derive.kinematics.kinematics import Bytes, Called, Case, Kinematics, Reals, SelfTest
 from derive.kinematics.sampling import sample_axes
 from derive.report.call_cost import with_operations
-from derive.report.reference_calls import Machine, branches, forward, inverse, machine_with, margins
+from derive.report.reference_calls import Machine, branches, fitted, forward, inverse, machine_with, margins
 from derive.work import stage
 
 _CANDIDATES, _LOOP_CANDIDATES = 300, 3000
@@ -40,6 +41,8 @@ _SIZE = 100.0
 """The range of linear axes in a machine without any length."""
 _DECIMALS = 6
 """Those of the limits and offsets of a usual machine."""
+_MISSED = 1.01
+"""A surplus rod whose length is multiplied by this misses the pose of the others."""
 _NO_ROTATION = 1.1
 """A rotation multiplied by this is no rotation."""
 
@@ -67,7 +70,7 @@ def self_test(kinematics: Kinematics) -> SelfTest:
 
 def _nominal(kinematics: Kinematics) -> Machine:
     """The nominal machine without limits, with an offset on every axis where it may have one."""
-    given = kinematics.unlimited_values
+    given = kinematics.unlimited_values | ({MAX_MISS: 0.0} if kinematics.mechanism.surplus else {})
     plain = machine_with(kinematics, given)
     offsets = {j.offset.name: _scaled(plain, j, 10.5 * (i + 1)) for i, j in enumerate(kinematics.mechanism.joints)}
     shifted = machine_with(kinematics, given | offsets)
@@ -265,6 +268,8 @@ class _Vectors:
         own = forward(self.machine, axes)[2]
         if axes:
             yield self._forward((2.0 * float(LARGEST), *axes[1:]))
+        for k in (k for k, j in enumerate(self._mechanism.joints) if j in self._mechanism.surplus_joints):
+            yield self._forward((*axes[:k], round(_MISSED * axes[k], _DECIMALS + self.machine.smaller), *axes[k + 1 :]))
         turned, far = (
             tuple(round(k * v, 6) for v in part) for k, part in ((_NO_ROTATION, frame[3:]), (1e3, frame[:3]))
         )
@@ -310,12 +315,13 @@ def _candidates(machine: Machine, share: float = 1.0) -> list[Reals]:
     else:
         return [()]
     angles = [j.axis_is_angle for j in mechanism.joints]
-    return [
+    rounded = [
         tuple(
             round(float(v), 1 if is_angle else 1 + machine.iterations) for v, is_angle in zip(row, angles, strict=True)
         )
         for row in drawn
     ]
+    return fitted(machine, rounded)
 
 
 def _turns(joint: Joint) -> float:

@@ -29,7 +29,7 @@ from derive.plate.legs import angles, by_angles
 from derive.plate.passive import commanded, renamed_in
 from derive.plate.plate import platform_checks
 from derive.report.derived import Derived
-from derive.report.reference_calls import FRAME, Machine, are_inside
+from derive.report.reference_calls import FRAME, Machine, are_inside, fitted, with_any_miss
 
 SINGULAR = 1e-6
 """A margin of at most this size cannot be distinguished from zero in a picture."""
@@ -74,16 +74,16 @@ def singular_pose(machine: Machine, derived: Derived, name: str, start: Reals) -
     """
     if machine.kinematics.mechanism.is_platform:
         return _of_platform(machine, derived, name)
-    place = [m.name for m in machine.kinematics.margins].index(name)
+    place, loose = [m.name for m in machine.kinematics.margins].index(name), with_any_miss(machine)
 
     def measure(rows: Array) -> Array:
-        return _measured(machine, rows)
+        return _measured(loose, rows)
 
     found = _clearest(measure, place, _starts(machine, np.array(start), measure, place), _scales(machine))
     if found is None:
         return None
     at, begun = found
-    beside = at + _BESIDE * (begun - at)
+    at, beside = (np.array(axes) for axes in fitted(machine, [tuple(at), tuple(at + _BESIDE * (begun - at))]))
     return SingularPose(name, tuple(at.tolist()), float(measure(at[None])[place, 0]), tuple(beside.tolist()))
 
 

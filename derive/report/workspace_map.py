@@ -15,7 +15,7 @@ from derive.ir.program import Status
 from derive.ir.symbols import branch_sign
 from derive.kinematics.kinematics import Reals
 from derive.kinematics.sampling import sample_axes, size_of
-from derive.report.reference_calls import FRAME, Machine, are_inside
+from derive.report.reference_calls import FRAME, Machine, are_inside, with_any_miss
 
 _POINTS, _MANY_SLOTS, _SEARCHED = 96, 36, 20
 """The points along a side: for few solutions, for more than `_FEW` branches, for a machine with a root search."""
@@ -72,7 +72,7 @@ def _ends(machine: Machine, frame: Reals) -> dict[str, tuple[float, float]]:
         reach = _AROUND * size_of(kinematics.mechanism, machine.values)
         return {c: (v - reach, v + reach) for c, v in zip("xyz", frame, strict=False)}
     drawn = sample_axes(kinematics.mechanism, dict(machine.values), _SAMPLES, _SEED)
-    found, status = run(kinematics.forward, {**machine.values, **drawn})
+    found, status = run(kinematics.forward, {**with_any_miss(machine).values, **drawn})
     good = np.asarray(np.broadcast_to(status == Status.OK, (_SAMPLES,)), dtype=bool)
     ends = {}
     for place, name in enumerate("xyz"):

@@ -18,6 +18,7 @@ orientation: the check of the orientations that a flange can have
 planted: poses close to where branches of a root search meet
 roots: all solutions of the closure for a pose, from many starts
 samples: machines and regular poses, drawn from a fixed seed
+surplus: axis values at which surplus rods fit the pose of the others
 """
 
 from __future__ import annotations

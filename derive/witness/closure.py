@@ -27,13 +27,20 @@ from derive.witness.frames import (
     Rows,
     Symbols,
     Term,
+    as_in,
     drift_of,
+    entries_at,
     followed_axes,
     followed_pose,
     frame_at,
+    is_miss,
     joint_values,
+    missed,
     motor_of,
     moved_by,
+    passive_rows,
+    pulled,
+    task_rows,
     term,
     turn,
 )
@@ -42,8 +49,6 @@ LEAST_MARGIN = 1e-6
 """A solution of a closed loop nearer to a type 2 singularity than this is not counted."""
 POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
 """The columns of a pose: position, then rotation by rows."""
-_TWIST = "tilt z"
-"""The row of a twist for the turn about the tool, where the task does not command it."""
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ class Closure:
 
     def row_scale(self, reach: Array) -> Array:
         """The unit of each row of the task, where lengths are measured in reaches."""
-        return np.where([row not in COORDINATE_NAMES for row in self.moved], 1.0, reach[:, None])
+        return np.where([row in COORDINATE_NAMES or is_miss(row) for row in self.moved], reach[:, None], 1.0)
 
     def joint_scale(self, reach: Array, joints: Array, parameters: Array) -> Array:
         """The unit of each joint, in radians and lengths: a radian of the closure, however slow a gear makes it."""
@@ -131,7 +136,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     machine: what was derived of it. It gives the names of its inputs in programs, and says what the signs of branches
     and of an assembly mode mean that the description does not name.
     """
-    described, count = with_exact_angles(described), len(described.joints)
+    described, count = with_exact_angles(as_in(machine, described)), len(described.joints)
     q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
     columns = _columns(described, machine)
     p = ca.SX.sym("p", len(columns))
@@ -142,20 +147,25 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     known |= {joint.symbol: q[i] for i, joint in enumerate(described.joints)}
     drives = [motor_of(j, q[i], known) if j.loops else (ca.SX(0), ca.SX(1)) for i, j in enumerate(described.joints)]
     task = task_rows(described)
-    rows = (*task, *_passive(described))
+    rows = (*task, *passive_rows(described))
     twist = ca.SX.sym("twist", len(rows))
     moved = moved_by(pose, rows, twist, followed_axes(described, known))
-    residual, equations = _residual(described, known, moved)
+    missing, misses = ca.SX.sym("misses", len(described.surplus)), [k for k, row in enumerate(rows) if is_miss(row)]
+    residual, equations = _residual(described, known, moved, missing + entries_at(twist, misses))
     units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in described.joints))
     at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(rows))])
     frame, speeds, rates = _frame_of(described, known), ca.SX.sym("speeds", count), ca.SX.sym("rates", len(rows))
     by_joints, moving = ca.jacobian(at_rest[0], q), ca.SX.sym("moving", count)
     posed = ca.jtimes(moved, twist, rates) if described.chain is None else ca.jtimes(frame, q, moving)
     velocity, moved_axes = at_rest[1] @ rates + by_joints @ moving, (axes, joints, speeds / units)
-    drift = drift_of(velocity, (q, moving), (pose, posed), moved_axes)
+    moving_pose = (ca.vertcat(pose, missing), ca.vertcat(posed, entries_at(rates, misses)))
+    drift = drift_of(velocity, (q, moving), moving_pose, moved_axes)
+    fitting = [missing], [ca.SX.zeros(len(misses))]
+    *at_rest, by_joints, drift = ca.substitute([*at_rest, by_joints, drift], *fitting)
     possible = [least for j, (_, least) in zip(described.joints, drives, strict=True) if j.loops]
     named = known | _position_symbols(pose)
     labels = _machine_symbols(described, machine, q, p) | _position_symbols(pose)
+    possible += pulled(described, known, at_rest[1][:, [k for k in range(len(rows)) if k not in misses]])
     state = (q, pose, p)
     angles, lengths = _places(described)
     turned = _column([term(a, known) for a in angles])
@@ -260,25 +270,6 @@ def _rates(turned: Term, q: Term, is_angle: NDArray[np.bool_]) -> Term:
     return ca.vertcat(*rows) if rows else ca.SX.zeros(0, 2)
 
 
-def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
-    """The commanded directions, which the rows of the Jacobian must be."""
-    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}
-    if mechanism.task.turning is Turning.DIRECTION:
-        return (*mechanism.task.position, "tilt x", "tilt y")
-    if mechanism.followed_turns:
-        return (*mechanism.task.position, *("pitch", "roll")[: mechanism.followed_turns])
-    return (*mechanism.task.position, *(f"turn {axis}" for axis in turns[mechanism.task.turning]))
-
-
-def _passive(described: Mechanism) -> tuple[str, ...]:
-    """The rows of a twist for what the equations of a turning platform move and the task does not command."""
-    if not described.is_platform:
-        return ()
-    read = {s for e in described.equations for s in sp.sympify(e).free_symbols}
-    own = (c for c in COORDINATE_NAMES if real(c) in read and c not in described.task.position)
-    return (*own, *((_TWIST,) if described.task.turning is Turning.DIRECTION else ()))
-
-
 def _positive(described: Mechanism, named: Symbols, machine: Mechanism, labels: Symbols) -> list[Term]:
     """The positive quantities of this machine: stated ones, distances from bounds, the indicator of
     the assembly mode.
@@ -292,7 +283,7 @@ def _positive(described: Mechanism, named: Symbols, machine: Mechanism, labels: 
     owner, symbols = (machine, labels) if described.assembly is None else (described, named)
     way = owner.assembly
     assert way is not None
-    lengths = sp.Mul(*[sp.Abs(rod.length) for rod in owner.rods])
+    lengths = sp.Mul(*[sp.Abs(rod.length) for rod in owner.holding_rods])
     mode = way.signs[0] * way.indicator * sp.sign(way.handedness) / lengths
     return [*left, (1 - 2 * labels[real(machine.assembly.parameter)]) * term(mode, symbols) - LEAST_MARGIN]
 
@@ -314,11 +305,12 @@ def _position_symbols(pose: Term) -> Symbols:
     return {symbol: pose[i] for i, symbol in enumerate((X.symbol, Y.symbol, Z.symbol, *ROTATION))}
 
 
-def _residual(mechanism: Mechanism, known: Symbols, pose: Term) -> tuple[Term, int]:
-    """Φ, and the number of its rows before those of the rotation."""
+def _residual(mechanism: Mechanism, known: Symbols, pose: Term, misses: Term) -> tuple[Term, int]:
+    """Φ, and the number of its rows before those of the rotation. misses: what surplus rods are too short."""
     if mechanism.chain is None:
-        named = known | _position_symbols(pose)
-        stated = [*mechanism.equations, *_turned(mechanism)]
+        equations, missing = missed(mechanism, misses)
+        named = known | _position_symbols(pose) | missing
+        stated = [*equations, *_turned(mechanism)]
         return _column([term(sp.sympify(e), named) for e in stated]), len(mechanism.equations)
     if mechanism.followed_turns:
         pose = followed_pose(mechanism, known, pose)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import reduce
+from itertools import combinations
 from operator import add, mul
 from typing import Any
 
@@ -13,11 +15,12 @@ import numpy as np
 import sympy as sp
 
 from derive.description.joints import Joint, Loop
-from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.mechanism import DescriptionError, Mechanism, Turning
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array
 from derive.ir.primitives import Select
+from derive.ir.symbols import COORDINATE_NAMES, real
 from derive.work import STEPS, spend
 
 
@@ -112,6 +115,8 @@ def moved_by(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term
     shift, spin, tilt = ([ca.SX(0)] * 3 for _ in range(3))
     parts = {"turn": spin, "tilt": tilt}
     for i, row in enumerate(task):
+        if is_miss(row):
+            continue
         if row in ("pitch", "roll"):
             about = axes[("pitch", "roll").index(row)]
             spin = [spin[k] + about[k] * twist[i] for k in range(3)]
@@ -120,6 +125,70 @@ def moved_by(pose: Term, task: tuple[str, ...], twist: Term, axes: Sequence[Term
     rotation = ca.reshape(pose[3:], 3, 3).T
     turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation + rotation @ ca.skew(ca.vertcat(*tilt))
     return ca.vertcat(pose[:3] + ca.vertcat(*shift), ca.reshape(turned.T, 9, 1))
+
+
+def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
+    """The commanded directions, which the rows of the Jacobian must be."""
+    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}
+    if mechanism.task.turning is Turning.DIRECTION:
+        return (*mechanism.task.position, "tilt x", "tilt y", *(f"miss {j.key}" for j in mechanism.surplus_joints))
+    if mechanism.followed_turns:
+        return (*mechanism.task.position, *("pitch", "roll")[: mechanism.followed_turns])
+    misses = (f"miss {j.key}" for j in mechanism.surplus_joints)
+    return (*mechanism.task.position, *(f"turn {axis}" for axis in turns[mechanism.task.turning]), *misses)
+
+
+def passive_rows(described: Mechanism) -> tuple[str, ...]:
+    """The rows of a twist for what the equations of a turning platform move and the task does not command."""
+    if not described.is_platform:
+        return ()
+    read = {s for e in described.equations for s in sp.sympify(e).free_symbols}
+    own = (c for c in COORDINATE_NAMES if real(c) in read and c not in described.task.position)
+    return (*own, *((_TWIST,) if described.task.turning is Turning.DIRECTION else ()))
+
+
+def entries_at(column: Term, places: list[int]) -> Term:
+    """The entries of a column at some places, which may be none."""
+    return column[places] if places else ca.SX.zeros(0, 1)
+
+
+def is_miss(row: str) -> bool:
+    """Whether a row of the Jacobian is the miss of a surplus rod."""
+    return row.startswith("miss ")
+
+
+def as_in(machine: Mechanism, described: Mechanism) -> Mechanism:
+    """A description with the surplus joints of the machine that was derived of it."""
+    names = {joint.name for joint in machine.surplus}
+    return replace(described, surplus=tuple(joint for joint in described.joints if joint.name in names))
+
+
+def missed(mechanism: Mechanism, misses: Term) -> tuple[list[sp.Expr], Symbols]:
+    """The stated equations with surplus rods that are longer by their misses, and the symbols of these."""
+    names = [sp.Symbol(f"miss {rod.name}") for rod in mechanism.surplus_rods]
+    rods = zip(mechanism.surplus_rods, names, strict=True)
+    longer = {rod.equation: replace(rod, length=rod.length + name).equation for rod, name in rods}
+    return [longer.get(e, e) for e in mechanism.equations], {name: misses[i] for i, name in enumerate(names)}
+
+
+def pulled(mechanism: Mechanism, known: Symbols, slopes: Term) -> list[Term]:
+    """The least tension of cables that hold a load, of those sets of legs that could hold it alone the largest, and a
+    positive number without a load. slopes: the derivatives of the stated equations by the pose.
+    """
+    if not mechanism.load:
+        return []
+    load = ca.vertcat(*(term(v, known) for v in mechanism.load))
+    count, first = slopes.shape[1], len(mechanism.equations) - len(mechanism.rods)
+    whole = ca.vertcat(load, ca.SX.zeros(count - load.numel()))
+    lines = [slopes[first + k, :].T for k in range(len(mechanism.rods))]
+    found: Term = -1.0
+    for legs in combinations(range(len(lines)), count):
+        tensions = ca.solve(ca.horzcat(*(lines[k] / ca.norm_2(lines[k]) for k in legs)), whole)
+        least: Term = 1.0
+        for pull in (tensions[i] for i, k in enumerate(legs) if mechanism.rods[k].only_pulls):
+            least = ca.fmin(least, pull)
+        found = ca.fmax(found, least)
+    return [ca.if_else(ca.norm_2(load) > 0, found, 1.0)]
 
 
 def drift_of(velocity: Term, joints: tuple[Term, Term], pose: tuple[Term, Term], axes: tuple[Term, Term, Term]) -> Term:
@@ -173,6 +242,8 @@ def followed_pose(mechanism: Mechanism, known: Symbols, pose: Term) -> Term:
     return ca.vertcat(pose[:3], ca.reshape(swung.T, 9, 1))
 
 
+_TWIST = "tilt z"
+"""The row of a twist for the turn about the tool, where the task does not command it."""
 _TOGETHER = 64
 """Rows that a CasADi function takes at a time."""
 _AS_LONG = 20

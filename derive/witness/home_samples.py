@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism
 from derive.ir.interpret import Array, evaluate
 from derive.witness.closure import Closure
+from derive.witness.frames import is_miss
 
 _SHIFT = 0.2
 """The largest distance of the platform from its home pose, in reaches."""
@@ -29,7 +30,7 @@ def axes_near_home(
     own = ["xyz".index(c) for c in mechanism.task.position]
     position[:, own] += _SHIFT * reach[:, None] * rng.uniform(-1.0, 1.0, (len(reach), width))
     rotation = home[:, 3:].reshape(-1, 3, 3)
-    for row in closure.task[width:]:
+    for row in (r for r in closure.task[width:] if not is_miss(r)):
         rotation = _turn("xyz".index(row[-1]), _TURN * rng.uniform(-1.0, 1.0, len(reach))) @ rotation
     pose = on_guides(closure, np.concatenate([position, rotation.reshape(-1, 9)], axis=1), parameters)
     offsets = np.stack([values[j.offset.name] for j in mechanism.joints], axis=1)

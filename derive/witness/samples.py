@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role
 from derive.geometry.frames import Motion
+from derive.ir.constants import LARGEST
 from derive.ir.interpret import Array, evaluate, run
 from derive.ir.program import Program, Require, Status
-from derive.ir.symbols import CHECK_FORWARD, MIN_TYPE2_MARGIN, SCALE
+from derive.ir.symbols import CHECK_FORWARD, MAX_MISS, MIN_TYPE2_MARGIN, SCALE
 from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement, NoPose
 from derive.witness.home_samples import axes_near_home
+from derive.witness.surplus import at_axes
 
 SEED = 20260
 MACHINES = 6
@@ -47,6 +49,10 @@ _SHIFT = 0.05
 """The largest random value of a length whose nominal value is zero, in reaches."""
 _SPREAD = {Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
 """The largest random value of another parameter whose nominal value is zero."""
+
+
+_EVERY_POSE = {MIN_TYPE2_MARGIN: LEAST_MARGIN, CHECK_FORWARD: False, MAX_MISS: float(LARGEST)}
+"""Settings with which every regular solution counts: also one that home does not find again, or fits none."""
 
 
 @dataclass(frozen=True)
@@ -117,10 +123,9 @@ def _drawn(
     else:
         axes = _axes(kin.mechanism, values, larger * reach, rng)
         _move_loops(kin.mechanism, closure, axes, (parameters, reach), rng)
-    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
+    axes, outputs, status = at_axes(kin, closure, values, parameters, axes)
+    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)} | outputs
     joints = closure.joints(axes, parameters)[:, :, 0]
-    outputs, status = run(kin.forward, values)
-    values |= outputs
     pose = np.stack([outputs[name] for name in POSE], axis=1)
     nothing, easy = np.empty((len(axes), 0)), np.ones(len(axes))
     found = Samples(values, machine, parameters, axes, joints, pose, reach, nothing, easy, easy)
@@ -202,7 +207,8 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     names |= {kin.mechanism.assembly.parameter} if kin.mechanism.assembly else set()
     names |= {b.home_flag for b in kin.branches} if kin.mechanism.is_platform else set()
     cones = [c for rod in kin.mechanism.rods for c in (rod.base_cone, rod.plate_cone) if c is not None]
-    names -= {s.name for cone in cones for s in cone.free_symbols}  # they refuse poses, and change no answer
+    refusing = {s.name for value in (*cones, *kin.mechanism.load) for s in value.free_symbols}
+    names -= refusing  # they refuse poses, and change no answer
     values = {}
     nominal = kin.unlimited_values
     largest = _SHIFT * float(_reach(kin.mechanism, _nominal(kin))[0])
@@ -211,10 +217,7 @@ def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
         drawn = _draw(parameter, count, rng, largest) if parameter.name in names else np.full(count, own)
         drawn[0] = own
         values[parameter.name] = drawn
-    if MIN_TYPE2_MARGIN in values:  # every regular solution counts
-        values[MIN_TYPE2_MARGIN] = np.full(count, LEAST_MARGIN)
-    if CHECK_FORWARD in values:  # also one that forward kinematics does not find from home
-        values[CHECK_FORWARD] = np.full(count, False)
+    values |= {name: np.full(count, value) for name, value in _EVERY_POSE.items() if name in values}
     values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
     constants, status = run(kin.setup, values)
     if status[0] != Status.OK:
@@ -320,14 +323,9 @@ def _inside(closure: Closure, samples: Samples) -> NDArray[np.bool_]:
     inside = np.all(closure.positive(samples.joints, samples.pose, samples.parameters)[:, :, 0] > 0, axis=1)
     for i, joint in enumerate(closure.described.joints):
         low, high = joint.domain or (-np.inf, np.inf)
-        value = samples.joints[:, i] / _unit(joint)
+        value = samples.joints[:, i] / (np.pi / 180.0 if joint.is_angle else 1.0)
         inside &= (value >= low) & (value <= high)
     return np.asarray(inside, dtype=bool)
-
-
-def _unit(joint: Joint) -> float:
-    """One unit of the axis in radians or lengths."""
-    return np.pi / 180.0 if joint.is_angle else 1.0
 
 
 def _singular_values(closure: Closure, samples: Samples) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ from tests.command.files import ROOT
 
 TEXT = (ROOT / "docs/OWN_MACHINE.md").read_text(encoding="utf-8")
 PROGRAMS: dict[str, str] = dict(re.findall(r"```python\n# (\w+)\.py\n(.*?)```", TEXT, re.DOTALL))
-"""The programs of the guide, by the names of their files: six machines, and the plot of a path."""
+"""The programs of the guide, by the names of their files: seven machines, and the plot of a path."""
 MACHINES = {name: text for name, text in PROGRAMS.items() if "MECHANISM = " in text}
 COMMANDS = [line.split("  #")[0].strip() for line in re.search(r"```sh\n(.*?)```", TEXT, re.DOTALL)[1].splitlines()]  # type: ignore[index]
 REFUSALS = tuple(

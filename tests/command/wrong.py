@@ -96,6 +96,12 @@ WRONG: dict[str, str] = {
     "held joints need a chain: of a closed loop every joint follows from the pose": changed(
         FIVE_BAR, ("joints=(A1, A2),", "joints=(A1, A2), held=(A1,),")
     ),
+    "surplus joint '…' must be the length of one rod without cones, and occur nowhere else": changed(
+        FIVE_BAR, ("joints=(A1, A2),", "joints=(A1, A2), surplus=(A1,),")
+    ),
+    "load= is for rods that only pull: state them by cable(...)": changed(
+        FIVE_BAR, ("joints=(A1, A2),", "joints=(A1, A2), load=(0, -1),")
+    ),
     "the closure has … equations, and the task commands only …": changed(
         FIVE_BAR, ('rod("2", KNEE_2, TOOL, ROD_2)', 'rod("2", KNEE_2, TOOL, ROD_2), rod("3", KNEE_2, TOOL, ROD_1)')
     ),

@@ -13,6 +13,7 @@ from typing import Any
 
 from derive.emit.around_c.package import klipper
 from derive.emit.c.package import module_name
+from derive.kinematics.kinematics import Kinematics
 from prove.klipper.path import Way, way_of
 from tests.mechanisms import kinematics_of, named
 from tests.outside import output_of, temporary, written
@@ -116,9 +117,14 @@ TOOLHEAD = SimpleNamespace(get_trapq=lambda: "queue", Coord=tuple)
 
 @cache
 def loaded(name: str) -> ModuleType:
+    """The module of a machine of the catalogue."""
+    return imported(kinematics_of(named(name)))
+
+
+def imported(kinematics: Kinematics) -> ModuleType:
     """The module of a machine, imported as Klipper does."""
-    folder = temporary("klipper")
-    part = klipper.part(kinematics_of(named(name)))
+    folder, name = temporary("klipper"), kinematics.mechanism.name
+    part = klipper.part(kinematics)
     assert part is not None
     written(klipper.files([part]), folder / "kinematics")
     chelper = ModuleType("chelper")

@@ -10,8 +10,22 @@ import pytest
 
 from derive.command.line import main
 from derive.description.catalogue import MECHANISMS
+from derive.description.validate import validate
 from derive.emit.around_c.package import klipper, only_positions
-from tests.klipper.pretended import TOOLHEAD, Config, Homing, Refused, loaded, made, move, sections_of, solver, way
+from tests.klipper.pretended import (
+    TOOLHEAD,
+    Config,
+    Homing,
+    Refused,
+    imported,
+    loaded,
+    made,
+    move,
+    sections_of,
+    solver,
+    way,
+)
+from tests.machines.surplus_machines import POINTS as SURPLUS
 from tests.mechanisms import catalogue, kinematics_of, named
 
 pytestmark = pytest.mark.broad
@@ -41,6 +55,26 @@ def test_steppers_stand_where_python_says(name: str) -> None:
         assert values == pytest.approx(row, abs=1e-7)
         position = kinematics.calc_position({s.get_name(): v for s, v in zip(steppers, found, strict=True)})
         assert position == pytest.approx(point, abs=1e-7)
+
+
+def test_a_winch_more_than_hold_the_point_has_a_stepper_of_its_own() -> None:
+    mechanism, anchors, middle = SURPLUS["four lines"]
+    lengths = np.linalg.norm(np.subtract(anchors, middle), axis=1)
+    sizes = {p.name: p.nominal for p in mechanism.parameters}
+    homes = {f"stepper_l{k}": {"position_home": v} for k, v in enumerate(lengths, 1)}
+    module = imported(kinematics_of(validate(mechanism)))
+    kinematics = module.load_kinematics(TOOLHEAD, Config({"printer": sizes, **homes}))
+    kinematics.home(Homing(kinematics))
+    steppers, place = kinematics.get_steppers(), np.add(middle, (20.0, -30.0, 40.0))
+    assert kinematics._home == pytest.approx(middle)
+    assert {solver().flags(s.solver) for s in steppers} == {7}
+    found = [s.at(place.tolist()) for s in steppers]
+    assert found == pytest.approx(np.linalg.norm(np.subtract(anchors, place), axis=1).tolist())
+    position = kinematics.calc_position({s.get_name(): v for s, v in zip(steppers, found, strict=True)})
+    assert position == pytest.approx(place.tolist(), abs=1e-7)
+    longer = {**homes, "stepper_l1": {"position_home": lengths[0] + 10.0}}
+    with pytest.raises(Refused, match="it misses the pose that the other axes give"):
+        module.load_kinematics(TOOLHEAD, Config({"printer": sizes, **longer}))
 
 
 @pytest.mark.parametrize("name", ["Kin_Scara2_Z", "Kin_P2C_Type1", "Kin_Delta_P3C_Type3"])

@@ -75,7 +75,7 @@ def _known(kin: Kinematics, module: str) -> dict[str, Any]:
 
 def only_positions(mechanism: Mechanism) -> bool:
     """Whether a position decides the axes: no turn is commanded, and no joint is moved by hand."""
-    is_whole = len(mechanism.joints) == len(mechanism.task.position) > 0
+    is_whole = len(mechanism.joints) - len(mechanism.surplus) == len(mechanism.task.position) > 0
     return is_whole and mechanism.task.turning is Turning.NONE and not mechanism.held_joints
 
 

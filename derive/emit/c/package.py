@@ -85,6 +85,7 @@ def module_name(mechanism: str) -> str:
 def _fits(kin: Kinematics) -> bool:
     given = () if kin.search_given is None else kin.search_given.outputs
     sizes = [(len(kin.mechanism.joints), MOST_AXES), (len(kin.branches), MOST_BRANCHES), (len(given), MOST_GIVEN)]
+    sizes.append((len(kin.rows), MOST_ROWS))
     sizes += [(len(kin.margins), MOST_MARGINS)]
     return all(size <= most for size, most in sizes)
 

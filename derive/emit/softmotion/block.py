@@ -22,9 +22,10 @@ from derive.emit.st.program import Printed
 from derive.ir.constants import TIE
 from derive.ir.passes import needed_for
 from derive.ir.program import Program
-from derive.ir.symbols import COORDINATE_NAMES, START_POSITION
+from derive.ir.symbols import START_POSITION
 from derive.ir.types import type_of
 from derive.kept import kept_by_identity
+from derive.kinematics.differential import is_of_length
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import CHECK_LIMITS, TIE_OF_LENGTHS, chooses_by_lengths
 
@@ -186,7 +187,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         turning=mechanism.task.turning.value,
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
-        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if row not in COORDINATE_NAMES),
+        turn_rows=tuple(k for k, row in enumerate(kinematics.rows) if not is_of_length(row)),
         margins=tuple(m.name for m in kinematics.margins),
         computed=_computed(kinematics),
         is_transformation=bool(contract.transformations),

@@ -35,7 +35,8 @@ def stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: st
         for plane in mechanism.guides
         if plane not in mechanism.fixed_guides
     ]
-    equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in mechanism.rods]
+    rods = mechanism.rods if known == "span" else mechanism.holding_rods
+    equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in rods]
     planes = tuple((c, offset.get(c, sp.Integer(0))) for c in COORDINATE_NAMES if c not in mechanism.motion.position)
     return Closure(tuple(equations), arguments_of(mechanism.equations), lets, planes)
 

@@ -42,6 +42,7 @@ from derive.kinematics.refusals.no_pose import why_no_pose
 from derive.kinematics.sampling import Samples, machine_at, possible_axes, sample_axes, sample_machine
 from derive.plate.legs import MARGIN, is_driven
 from derive.plate.plate import platform_checks
+from derive.plate.surplus import sign_at_nominal
 from derive.work import stage
 
 _SAMPLES = 256
@@ -88,21 +89,31 @@ def _derived(mechanism: Mechanism) -> Assembly:
     slopes = sp.Matrix([[sp.diff(e, c) for c in coordinates] for e in mechanism.closure]).reshape(
         len(mechanism.closure), len(coordinates)
     )
-    rods = sp.Matrix([_along(rod, coordinates) for rod in mechanism.rods]).reshape(
-        len(mechanism.rods), len(coordinates)
+    rods = sp.Matrix([_along(rod, coordinates) for rod in mechanism.holding_rods]).reshape(
+        len(mechanism.holding_rods), len(coordinates)
     )
     held = _without_held(sp.Matrix.vstack(slopes, rods))
-    is_of_rods = held.rows == len(mechanism.rods)
+    is_of_rods = held.rows == len(mechanism.holding_rods)
     margin = _MARGINS.get(held.rows, _CLOSURE) if is_of_rods else _CLOSURE
     meanings = _meanings(mechanism, held.rows if is_of_rods else 0)
-    lower = _lower(mechanism, held.det())
+    lower, nominal = _lower(mechanism, held.det()), sign_at_nominal(mechanism, held.det())
     if lower == 0:
-        return replace(assembly(_NAME, held.det(), margin=margin, positive=+1, negative=-1), meanings=meanings)
-    names = {"below": lower, "above": -lower}  # arms and carriages hold the tool below them, legs without any stand
-    if not is_driven(mechanism, [v for rod in mechanism.rods for v in rod.base]):
+        named = assembly(_NAME, held.det(), margin=margin, **_with_first({"positive": +1, "negative": -1}, nominal))
+        return replace(named, meanings=meanings if named.signs[0] > 0 else (meanings[1], meanings[0]))
+    names = {
+        "below": lower,
+        "above": -lower,
+    }  # the tool hangs from arms, carriages and cables, and stands on other legs
+    hangs = all(rod.only_pulls for rod in mechanism.holding_rods)
+    if not hangs and not is_driven(mechanism, [v for rod in mechanism.holding_rods for v in rod.base]):
         names = dict(reversed(names.items()))
-    named = assembly(_NAME, held.det(), margin=margin, **names)
+    named = assembly(_NAME, held.det(), margin=margin, **_with_first(names, nominal))
     return replace(named, meanings=meanings if named.signs[0] > 0 else (meanings[1], meanings[0]))
+
+
+def _with_first(names: dict[str, int], sign: int) -> dict[str, int]:
+    """The names of the modes with that of a sign first; 0 leaves them as they are."""
+    return dict(sorted(names.items(), key=lambda named: named[1] == -sign))
 
 
 def _lower(mechanism: Mechanism, determinant: sp.Expr) -> int:
@@ -145,7 +156,7 @@ def _without_held(matrix: sp.Matrix) -> sp.Matrix:
 
 def _meanings(mechanism: Mechanism, rods: int) -> tuple[str, str]:
     """The meanings of both signs."""
-    names = [rod.name for rod in mechanism.rods]
+    names = [rod.name for rod in mechanism.holding_rods]
     if rods == 2:
         text = f"from its base to the tool, rod {names[1]} points to the {{}} of rod {names[0]}"
         return text.format("left"), text.format("right")

@@ -17,9 +17,10 @@ from derive.ir.program import Program
 from derive.ir.symbols import MIN_TYPE2_MARGIN, ROTATION_ENTRIES
 from derive.kinematics.kinematics import Exact, Kinematics
 from derive.witness.disagreement import Disagreement
-from derive.witness.exact.field import PRIME, NoRoot, Pair, on_circle
+from derive.witness.exact.field import PRIME, NoRoot, Pair, on_circle, root
 from derive.witness.exact.runs import Known, Run, Signs, evaluated
-from derive.witness.exact.values import ZERO, Angles, Fractional, NotAlgebraic, NotPlanted, Value, fraction
+from derive.witness.exact.values import ONE, ZERO, Angles, Fractional, NotAlgebraic, NotPlanted, Value, fraction
+from derive.witness.frames import as_in
 
 TRIALS = 3
 _STEPS = 500
@@ -135,7 +136,7 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
         return Exact(0, "with deviations, the inverse ends in steps on the closure")
     if kin.mechanism.drives:
         return Exact(0, "loops move joints of its chain")
-    described = _with_exact_ends(with_exact_angles(described))
+    described = _with_exact_ends(with_exact_angles(as_in(kin.mechanism, described)))
     try:
         return _checked(kin, described)
     except Disagreement:
@@ -306,9 +307,23 @@ def _check_forward(trial: Trial) -> None:
         if trial.described.chain is not None:
             return all(pose[n].number == trial.pose[n].number for n in _POSE)
         trial.pose = pose
+        _fit_surplus(trial)
         return not any(trial.equations(trial.axes, pose))
 
     _runs(trial, "forward", trial.axes, is_right)
+
+
+def _fit_surplus(trial: Trial) -> None:
+    """Give the axes of surplus rods, which nothing planted, the lengths that they have at the pose."""
+    for joint, rod in zip(trial.described.surplus_joints, trial.described.surplus_rods, strict=True):
+
+        def at(value: Value, wanted: sp.Expr, axis: str = joint.axis.name) -> Value:
+            joints = trial.joints({**trial.axes, axis: value})
+            return evaluated([wanted], {**joints, **trial.pose}, trial.angles, trial.degree, trial.own)[0]
+
+        zero = at(ZERO, rod.length)
+        away = Value(root(at(ZERO, rod.equation + rod.length**2).number)) + -zero
+        trial.axes[joint.axis.name] = away * (at(ONE, rod.length) + -zero).inverted()
 
 
 def _check_inverse(trial: Trial) -> None:

@@ -168,6 +168,7 @@ class Mechanism(Value, ABC):
     PERIOD_AXES: tuple[int, ...]
     """The indices of the axes that have period bytes."""
     HELD: tuple[int, ...] = ()
+    SURPLUS: tuple[int, ...] = ()
     """The indices of the axes that the inverse leaves where the reference has them."""
     LINES: tuple[tuple[int, int, str], ...] = ()
     """What is drawn of a closed loop: lines by the numbers of two points of `_points`, -1 is the tool, and the axes."""
@@ -275,9 +276,31 @@ class Mechanism(Value, ABC):
         values = reals(axes, len(self.AXES), "axes")
         pose = self._forward(values)
         if isinstance(pose, Status):
+            self._missed(values, pose)
             self._fail("forward", pose, axes=values)
         position, rows, margins = pose
         return Frame(position, rows), self._written(margins, values)
+
+    def misses(self, axes: Numbers) -> dict[str, float]:
+        """What each surplus rod is too short for the pose that the other axes give, by the name of its axis.
+
+        axes: one value for each axis. `forward` refuses a miss larger than `max_miss` (0: a thousandth of the length).
+        Empty for a machine without `SURPLUS` axes. Raises the other errors of `forward`.
+        """
+        values = reals(axes, len(self.AXES), "axes")
+        if not self.SURPLUS:
+            return {}
+        most = next(p.high for p in self.PARAMETERS if p.name == "max_miss")
+        loose = type(self)(**{**self.parameters, "max_miss": most})
+        pose = loose._forward(values)
+        if isinstance(pose, Status):
+            self._fail("misses", pose, axes=values)
+        position, rows, margins = pose
+        signs = tuple(-1 if margin < 0.0 else 1 for margin in margins)
+        fitting = loose._branch(position, rows, signs, (0,) * len(self.PERIOD_AXES), values)
+        if isinstance(fitting, Diagnosis):
+            self._fail("misses", fitting, position=position, rotation=rows, reference=values)
+        return {self.AXES[i].name: fitting[i] - values[i] for i in self.SURPLUS}
 
     def orientation(self, axes: Numbers) -> Rotation:
         """The rotation of the frame at axis values, by rows."""
@@ -1065,6 +1088,12 @@ class Mechanism(Value, ABC):
             message = f"{self.NAME}.{call}: axes {axes} are beyond the limits: {refused.in_words}"
             raise KinematicsError(refused.status, message, refused)
         return axes
+
+    def _missed(self, axes: Reals, why: Status) -> None:
+        """Raise the error of forward kinematics with the misses of surplus rods, where these refuse."""
+        if why is Status.IMPOSSIBLE and self.SURPLUS:
+            found = ", ".join(f"{name} is {miss:+.6g} too short" for name, miss in self.misses(axes).items())
+            raise KinematicsError(why, f"{self.NAME}.forward: {why.meaning}: at the pose of the other axes {found}")
 
     def _fail(self, call: str, why: Status | Diagnosis, **inputs: object) -> NoReturn:
         """Raise the error of a call that fails."""

@@ -140,6 +140,10 @@ class InRadians(Around):
         """The machine in degrees as plain data, with the mark `in_radians`."""
         return {**self.part.to_dict(), "in_radians": True}
 
+    def misses(self, axes: Numbers) -> dict[str, float]:
+        """The misses of surplus rods, which are lengths."""
+        return self.part.misses(self._deg(reals(axes, len(self.AXES), "axes")))
+
     def _rad(self, axes: Reals) -> Reals:
         return tuple([a * DEGREE if is_angle else a for a, is_angle in zip(axes, self._angles, strict=True)])
 

@@ -19,7 +19,8 @@ _SINGULAR = 4.0 * float(np.finfo(np.float64).eps)
 """A singular value smaller than this share of the largest one is zero to all digits."""
 MISSED = 1e-9
 """A twist is reached where what is missing of it is at most this share of its size."""
-_LINEAR = ("x", "y", "z")
+_LINEAR = ("x", "y", "z", "miss")
+"""The first words of rows that are lengths."""
 
 
 def twist(robot: Mechanism, axes: Numbers, velocities: Numbers) -> Reals:
@@ -128,7 +129,7 @@ def _sizes(robot: Mechanism, call: str, length: float | None, *, is_needed: bool
     (size,) = checked(robot, call, (length,), 1, "length")
     if not size > 0.0:
         raise _bad(robot, call, f"length must be positive, not {length!r}")
-    rows = np.array([size if row in _LINEAR else 1.0 for row in robot.JACOBIAN_ROWS])
+    rows = np.array([size if row.split()[0] in _LINEAR else 1.0 for row in robot.JACOBIAN_ROWS])
     columns = np.array([size if axis.unit == "u" else 1.0 for axis in robot.AXES])
     return rows, columns
 
@@ -136,7 +137,7 @@ def _sizes(robot: Mechanism, call: str, length: float | None, *, is_needed: bool
 def _is_mixed(robot: Mechanism) -> bool:
     """Whether rows, or axes that are not held, differ in their unit."""
     kinds = {robot.AXES[i].unit for i in _free(robot)}
-    return len(kinds) > 1 or len({row in _LINEAR for row in robot.JACOBIAN_ROWS}) > 1
+    return len(kinds) > 1 or len({row.split()[0] in _LINEAR for row in robot.JACOBIAN_ROWS}) > 1
 
 
 def checked(robot: Mechanism, call: str, values: Numbers, count: int, what: str) -> _Array:

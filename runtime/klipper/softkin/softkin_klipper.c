@@ -17,6 +17,11 @@
 
 #define KIND (&SOFTKIN_MECHANISM)
 
+/* The place of the coordinate that a row of the Jacobian is; -1 for the miss of a surplus rod. */
+static int coordinate_of(int row) {
+  return KIND->rows[row][1] == '\0' ? KIND->rows[row][0] - 'x' : -1;
+}
+
 /* A position, and the axes there. */
 typedef struct {
   double position[3], axes[SOFTKIN_MOST_AXES];
@@ -42,8 +47,10 @@ typedef struct {
 static softkin_frame frame_at(const softkin_printer *printer, const double *at) {
   softkin_frame frame = printer->frame;
   for (int i = 0; i < KIND->row_count; i += 1) {
-    const int letter = KIND->rows[i][0] - 'x';
-    frame.position[letter] = at[letter];
+    const int letter = coordinate_of(i);
+    if (letter >= 0) {
+      frame.position[letter] = at[letter];
+    }
   }
   return frame;
 }
@@ -133,7 +140,7 @@ struct stepper_kinematics *softkin_klipper_stepper(const softkin_printer *printe
     memcpy(made->axes, printer->home.axes, sizeof(made->axes));
     made->sk.calc_position_cb = position_of;
     for (int i = 0; i < KIND->row_count; i += 1) {
-      made->sk.active_flags |= AF_X << (KIND->rows[i][0] - 'x');
+      made->sk.active_flags |= coordinate_of(i) < 0 ? 0 : AF_X << coordinate_of(i);
     }
   }
   return made != NULL ? &made->sk : NULL;

@@ -8,11 +8,11 @@ from typing import Any
 from softkin._configuration import Criterion
 from softkin._core import Image, Mechanism
 from softkin._ends import Ends
-from softkin._types import Configuration, ConfigurationLike, Diagnosis, Reals, Status, Turns
+from softkin._types import Configuration, ConfigurationLike, Diagnosis, Numbers, Reals, Status, Turns
 
 _COMMON = (
     "AXES", "CONFIGURATION", "DEFAULT_CONFIGURATION", "MARGINS", "JACOBIAN_ROWS", "READS_ROTATION", "FREEDOM",
-    "BRANCHES", "PERIOD_AXES", "HELD", "DISTANCE_AXES", "checks_limits",
+    "BRANCHES", "PERIOD_AXES", "HELD", "SURPLUS", "DISTANCE_AXES", "checks_limits",
 )  # fmt: skip
 
 
@@ -36,6 +36,10 @@ class Around(Mechanism):
     def limits(self) -> dict[str, Ends | None]:
         """The limits of the machine within."""
         return self._within.limits
+
+    def misses(self, axes: Numbers) -> dict[str, float]:
+        """The misses of the machine within."""
+        return self._within.misses(axes)
 
     @property
     def _criteria(self) -> tuple[Criterion, ...]:
