@@ -61,6 +61,10 @@ def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Conten
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
     """The page of one machine of a user."""
     mechanism = with_deviations(load(path)) if options.calibrated else load(path)
+    beside = path.with_suffix(".glb")
+    if beside.is_file():
+        stages.line(f"  with the meshes of {beside}")
+        models = (Model("", _binary_gltf(beside)), *models)
     package = own.package_of(path, None)
     built = derive_one(mechanism, None, stages.report, [_LANGUAGE, "python"])
     files = files_of([built], languages(None, package, [_LANGUAGE]))
@@ -112,9 +116,13 @@ def _model(text: str) -> Model:
     if not found:
         raise GenerationError(f"--model {text}: write body=file.glb, or body=file.glb*1000 for a file in metres")
     try:
-        data, scale = Path(found[2]).read_bytes(), float(found[3] or 1)
+        return Model(found[1], _binary_gltf(Path(found[2])), float(found[3] or 1))
     except ValueError:
         raise GenerationError(f"--model {text}: {found[3]!r} is no scale") from None
+
+
+def _binary_gltf(path: Path) -> bytes:
+    data = path.read_bytes()
     if data[:4] != b"glTF":
-        raise DescriptionError(f"{found[2]} is no binary glTF (.glb)")
-    return Model(found[1], data, scale)
+        raise DescriptionError(f"{path} is no binary glTF (.glb)")
+    return data

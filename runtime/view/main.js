@@ -164,7 +164,7 @@ class Page {
     parts.scale.textContent = isWhole ? `grid ${Number(stage.ground.step.toPrecision(1))} u` : "";
     if (isWhole) {
       this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
-      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => this.refusing.has(body) });
+      stage.show(pose.scene, refusal ? model.target : null, (body) => this.refusing.has(body));
       stage.figure.mark(refusal ? "refused" : stateOf(pose));
     }
     parts.refusal.hidden = !said;
@@ -196,9 +196,11 @@ class Page {
   }
 
   async #meshes() {
-    this.stage.clearBodies();
-    if (!this.data.models.length || !this.model.pose) return;
-    for (const { body, mesh } of await meshesOf(this.data.models)) this.stage.replaceBody(body, mesh);
+    const { data, model, stage } = this;
+    if (!data.models.length || !model.pose) return;
+    const { machine } = model.module.create(model.nominal);
+    stage.replaceBodies(await meshesOf(data.models, machine.scene(model.axes.map(() => 0))));
+    if (!stage.view) stage.fit(model.pose.scene);
     this.#show("pose");
   }
 

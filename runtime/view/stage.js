@@ -1,7 +1,7 @@
 /** The picture: camera, light, floor, the machine, its ghosts, the tool's frame that is dragged, a path, a slice. */
 
 import {
-  BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Object3D,
+  Box3, BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Object3D,
   PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Vector2, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -23,7 +23,7 @@ const OUTSIDE = 1.02;
 export class Stage {
   #ghosts = [];
   #isAsked = false;
-  #meshes = new Map();
+  #meshes = [];
   #fitted = null;
 
   /** heard: {onDrag(frame, isFinished), onGhost(index), onAssembly(), onView(), onDrawn(isInside)}. */
@@ -73,7 +73,9 @@ export class Stage {
   /** Take the size of a machine from its scene. */
   measure(scene) {
     stand(this.world, scene);
-    this.extent = extentOf(scene, this.world);
+    this.#showMeshes(scene, () => false);
+    this.world.updateMatrixWorld(true);
+    this.extent = extentOf(scene, this.world, this.#meshes.map(({ holder }) => new Box3().setFromObject(holder)));
     this.size = this.extent.size;
     rangeOf(this.camera, this.size);
     this.#layFloor();
@@ -110,18 +112,13 @@ export class Stage {
     this.ask();
   }
 
-  /** Show a scene, and the frame that is wanted where it is not that of the tool. */
-  show(scene, target, options) {
-    this.figure.show(scene, this.size, { ...options, hidden: new Set(this.#meshes.keys()) });
+  /** Show a scene, and the frame that is wanted where it is not that of the tool. refused: whether a body refuses. */
+  show(scene, target, refused) {
+    this.figure.show(scene, this.size, { refused, hidden: this.#showMeshes(scene, refused) });
     this.shown = scene;
     if (!this.isDragged) stand(this.world, scene);
     const tool = scene.bodies[scene.bodies.length - 1].frame;
     this.#place(this.triad, tool, 0.14);
-    this.#meshes.forEach((mesh, name) => {
-      const body = scene.bodies.find((one) => one.name === name);
-      mesh.visible = Boolean(body);
-      if (body) this.#place(mesh, body.frame, null);
-    });
     if (!this.isDragged) this.#place(this.handle, target ?? tool, null);
     this.ask();
   }
@@ -197,17 +194,27 @@ export class Stage {
     this.ask();
   }
 
-  /** A mesh of the user's own in the place of a body. */
-  replaceBody(name, mesh) {
-    const holder = new Object3D();
-    holder.add(mesh);
-    this.#meshes.set(name, holder);
-    this.world.add(holder);
+  /** Meshes as `meshesOf` finds them, each in the place of a body; those before them are gone. */
+  replaceBodies(found) {
+    this.#meshes.forEach(({ holder }) => holder.removeFromParent());
+    this.#meshes = found.map((one) => ({ ...one, holder: Object.assign(new Object3D().add(one.mesh), { userData: { body: one.body } }) }));
+    this.#meshes.forEach(({ holder }) => this.world.add(holder));
   }
 
-  clearBodies() {
-    this.#meshes.forEach((mesh) => mesh.removeFromParent());
-    this.#meshes.clear();
+  /** Meshes where their bodies are, in the colour of a body that refuses. Returns these bodies. */
+  #showMeshes(scene, refused) {
+    return new Set(this.#meshes.map(({ body: name, number, holder }) => {
+      const body = scene.bodies.filter((one) => one.name === name)[number];
+      holder.visible = Boolean(body);
+      if (!body) return null;
+      this.#place(holder, body.frame, null);
+      const { materials } = this.figure;
+      holder.traverse((one) => {
+        const { kind, own } = one.userData;
+        if (kind) one.material = refused(body) ? materials.refused : own ?? materials[kind];
+      });
+      return body;
+    }));
   }
 
   /** Draw soon, once. */

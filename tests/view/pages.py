@@ -80,19 +80,20 @@ def own_page(folder: Path) -> Path:
     A1 has limits; A2 is a mesh in metres; the second link is called as no keyword of Python can be.
     """
     (folder / "own.glb").write_bytes(triangle())
-    _run(folder, "new", "my_machine.py")
+    run_derive(folder, "new", "my_machine.py")
     path = folder / "my_machine.py"
     text = path.read_text(encoding="utf-8").replace('"link_length_2"', '"lambda"')
     path.write_text(text.replace('"Arm 1 about Z")', '"Arm 1 about Z", limits=(-150, 150))'), encoding="utf-8")
-    _run(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
-    _run(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
+    run_derive(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
+    run_derive(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
     return folder / "pages" / "my_machine.html"
 
 
-def _run(folder: Path, *arguments: str) -> None:
+def run_derive(folder: Path, *arguments: str) -> str:
+    """Run a command; what it prints."""
     command = [sys.executable, "-m", "derive", *arguments]
     environment = {"PYTHONPATH": str(OUTPUT.parent), "PATH": "", "HOME": str(folder)}
-    output_of(command, cwd=folder, env=environment)
+    return output_of(command, cwd=folder, env=environment)
 
 
 ROOT = Path(__file__).parents[2]
