@@ -18,7 +18,7 @@ from derive.faults import GenerationError
 from derive.form.deviations import with_deviations
 from derive.output import write_file
 from derive.pipeline import Built, derive_one, files_of, languages
-from derive.view.node import MissingTool
+from derive.view.node import MissingTool, node
 from derive.view.page import BrokenPage, Content, Model, page
 
 _LANGUAGE = "javascript"
@@ -37,6 +37,7 @@ def view(options: argparse.Namespace) -> int:
         modules = _modules(machine_files(options))
         _write(options.out / "viewer.html", content_of(catalogue(options.mechanisms), modules))
         return 0
+    _node()  # before anything is derived
     files_given = own.described(options.files)
     if options.model and len(files_given) > 1:
         raise GenerationError("--model names a body of one machine: view one file at a time")
@@ -78,6 +79,13 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
         models=models,
     )
     _write(options.out / f"{package}.html", content, stages.line)
+
+
+def _node() -> None:
+    try:
+        node()
+    except MissingTool as problem:
+        raise GenerationError(str(problem)) from None
 
 
 def _write(path: Path, content: Content, say: Callable[[str], None] = print) -> None:

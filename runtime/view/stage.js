@@ -22,6 +22,8 @@ const OUTSIDE = 1.02;
 
 export class Stage {
   #ghosts = [];
+  #others = [];
+  others = [];
   #isAsked = false;
   #meshes = [];
   #fitted = null;
@@ -47,9 +49,8 @@ export class Stage {
     this.scene.add(this.floor, this.world);
     this.triad = triad();
     this.origin = triad();
-    this.assembly = new Figure({ isGhost: true, ghost: "assembly" });
-    this.assembly.group.visible = false;
-    this.world.add(this.assembly.group, this.extra, this.triad, this.origin);
+    this.assembly = new Group(); // ghosts of other poses at the same axes
+    this.world.add(this.assembly, this.extra, this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.listenToKeyEvents(canvas);
     this.orbit.addEventListener("change", () => {
@@ -65,7 +66,7 @@ export class Stage {
   /** The colours of a theme, "light" or "dark". */
   paint(theme) {
     this.theme = theme;
-    [this.figure, this.assembly, ...this.#ghosts].forEach((figure) => figure.paint(COLOURS[theme]));
+    [this.figure, ...this.#ghosts, ...this.#others].forEach((figure) => figure.paint(COLOURS[theme]));
     if (this.extent) this.#layFloor();
     this.ask();
   }
@@ -125,23 +126,26 @@ export class Stage {
 
   /** Ghosts of scenes, each with the number by which it is taken. */
   showGhosts(scenes) {
-    while (this.#ghosts.length < scenes.length) {
-      const ghost = new Figure({ isGhost: true, colours: COLOURS[this.theme] });
-      this.#ghosts.push(ghost);
-      this.world.add(ghost.group);
-    }
-    this.#ghosts.forEach((ghost, i) => {
-      ghost.group.visible = i < scenes.length;
-      if (ghost.group.visible) ghost.show(scenes[i], this.size);
-    });
-    this.ask();
+    this.#fill(this.#ghosts, scenes, "ghost", this.world);
   }
 
-  /** The scene of the same axes in the other assembly mode, seen through; null takes it away. */
-  showAssembly(scene) {
-    this.assembly.group.visible = Boolean(scene);
-    this.other = scene;
-    if (scene) this.assembly.show(scene, this.size);
+  /** Other poses at the same axes, seen through: {scene, text}. The ground lies below them. */
+  showOthers(others) {
+    const isAnother = others.length !== this.others.length;
+    this.others = others;
+    if (isAnother) this.#layFloor();
+    this.#fill(this.#others, others.map(({ scene }) => scene), "assembly", this.assembly);
+  }
+
+  #fill(figures, scenes, ghost, parent) {
+    while (figures.length < scenes.length) {
+      figures.push(new Figure({ isGhost: true, ghost, colours: COLOURS[this.theme] }));
+      parent.add(figures.at(-1).group);
+    }
+    figures.forEach((figure, i) => {
+      figure.group.visible = i < scenes.length;
+      if (figure.group.visible) figure.show(scenes[i], this.size);
+    });
     this.ask();
   }
 
@@ -272,7 +276,9 @@ export class Stage {
   }
 
   #layFloor() {
-    this.ground.lay(this.extent, this.theme);
+    const { low, size, centre } = this.extent;
+    const depths = this.others.map(({ scene }) => extentOf(scene, this.world).low[2]);
+    this.ground.lay({ low: [low[0], low[1], Math.min(low[2], ...depths)], size, centre }, this.theme);
     this.origin.scale.setScalar(BASE * this.size);
   }
 
@@ -287,7 +293,8 @@ export class Stage {
     ray.setFromCamera(point, this.camera);
     const shown = this.#ghosts.filter((ghost) => ghost.group.visible).map((ghost) => ghost.group);
     const hit = ray.intersectObjects(shown, true).find(({ object }) => object.visible);
-    if (!hit && this.other && ray.intersectObject(this.assembly.group, true).some(({ object }) => object.visible)) this.heard.onAssembly();
+    const others = this.#others.filter((other) => other.group.visible).map((other) => other.group);
+    if (!hit && ray.intersectObjects(others, true).some(({ object }) => object.visible)) this.heard.onAssembly();
     if (!hit) return;
     this.heard.onGhost(shown.findIndex((group) => group.children.includes(hit.object)));
   }
@@ -301,7 +308,7 @@ export class Stage {
       return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
     };
     const letters = lettersOf(BASE * this.size).map(({ text, at }) => ({ text, at: placed(at).map((value) => value - 7), isFixed: true }));
-    const other = this.other?.bodies.slice(-1).map(({ frame }) => ({ text: "other assembly mode", at: placed(frame.position) })) ?? [];
+    const other = this.others.map(({ text, scene }) => ({ text, at: placed(scene.bodies.at(-1).frame.position) }));
     const joints = this.shown.joints.map((joint) => ({ text: joint.joints.join(" "), at: placed(joint.at) }));
     const seen = [...letters, ...joints, ...other].filter(({ at: [x, y] }) => x > 0 && x < width && y > -ABOVE && y < height);
     this.names.show(seen, placed(this.handle.position.toArray()));
