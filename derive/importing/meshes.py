@@ -276,7 +276,9 @@ def glb(parts: Sequence[Part]) -> bytes:
         "asset": {"version": "2.0", "generator": "softkin import --meshes"},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(nodes)))}],
-        "nodes": [{"mesh": k, "extras": {"body": b.name, "number": b.number}} for k, b in enumerate(nodes)],
+        "nodes": [
+            {"mesh": k, "name": b.name, "extras": {"body": b.name, "number": b.number}} for k, b in enumerate(nodes)
+        ],
         "meshes": [{"primitives": shapes} for shapes in nodes.values()],
         **({"materials": materials} if materials else {}),
         "buffers": [{"byteLength": len(blob)}],

@@ -13,6 +13,7 @@ import pytest
 import trimesh
 from numpy.typing import NDArray
 
+from derive.command.line import main
 from derive.importing import meshes
 from derive.importing.importing import Imported, imported_meshes
 from derive.importing.meshes import Meshes
@@ -257,6 +258,32 @@ def test_many_triangles_are_simplified(tmp_path: Path, monkeypatch: pytest.Monke
     one, other = (nodes_of(data)["A1", 0] for data in (found.data, whole.data))
     assert np.allclose(one.max(axis=0), other.max(axis=0), rtol=0, atol=2.0)
     assert np.allclose(one.min(axis=0), other.min(axis=0), rtol=0, atol=2.0)
+
+
+def test_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file that is too large, and shapes that are too many, are left out, with the bound."""
+    path = robot(tmp_path)
+    monkeypatch.setattr(meshes, "_LARGEST_FILE", 10)
+    assert all("has more than 0 MB" in line for line in taken(path)[1].report[:4])
+    monkeypatch.undo()
+    monkeypatch.setattr(meshes, "_MOST_SHAPES", 2)
+    assert taken(path)[1].report[0] == "Left out: 3 shapes; 2 are read."
+
+
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """It names the files that it writes, replaces none, and says which package reads meshes."""
+    arguments = ["import", str(robot(tmp_path)), "--out", str(tmp_path / "own.py"), "--meshes"]
+    (tmp_path / "own.glb").write_bytes(b"mine")
+    assert main(arguments) == 2 and not (tmp_path / "own.py").exists()
+    assert "own.glb: exists, and may have been edited: name another file with --out" in capsys.readouterr().err
+    (tmp_path / "own.glb").unlink()
+    monkeypatch.setattr(meshes, "_NEEDED", ("no_reader",))
+    assert main(arguments) == 2
+    wanted = "--meshes needs the package no_reader: pip install 'softkin-compiler[view]'"
+    assert wanted in capsys.readouterr().err
+    monkeypatch.undo()
+    assert main(arguments) == 0 and (tmp_path / "own.glb").read_bytes().startswith(b"glTF")
+    assert f"`softkin view {tmp_path / 'own.py'}` shows it on the machine" in capsys.readouterr().out
 
 
 def test_only_a_urdf_has_them(tmp_path: Path) -> None:
