@@ -27,9 +27,7 @@ _LARGEST_FILE = 200_000_000
 """Bytes of a mesh file; a larger one is left out."""
 _MOST_SHAPES = 500
 TRIANGLES = 100_000
-"""Of all meshes together: more are simplified, in proportion."""
-_FEWEST = 200
-"""Triangles that every shape may have."""
+"""Of all meshes together: if there are more, the shapes with the most are simplified."""
 _NEEDED = ("trimesh", "fast_simplification", "collada")
 Indices = NDArray[np.uint32]
 
@@ -86,7 +84,7 @@ def meshes_of(path: Path, robot: Robot, axes: Sequence[str], chain: Simple, scal
     if not parts:
         return Meshes(b"", (*said, "No mesh was read."))
     before = sum(len(part.triangles) for part in parts)
-    parts = _simplified(parts, before)
+    parts = list(_simplified(parts))
     data = glb(parts)
     after = sum(len(part.triangles) for part in parts)
     less = f", simplified to {after:,}" if after < before else ""
@@ -215,18 +213,25 @@ def _share(colour: NDArray[np.uint8]) -> Colour:
     return (red, green, blue)
 
 
-def _simplified(parts: Sequence[Part], before: int) -> list[Part]:
-    if before <= TRIANGLES:
-        return list(parts)
-    simplify = import_module("fast_simplification").simplify
-    found = []
+def _simplified(parts: Sequence[Part]) -> Iterator[Part]:
+    most = _most([len(part.triangles) for part in parts])
     for part in parts:
-        count = max(_FEWEST, int(len(part.triangles) * TRIANGLES / before))
         points, triangles = part.points, part.triangles
-        if count < len(triangles):
-            points, triangles = simplify(points.astype(np.float32), triangles.astype(np.int32), target_count=count)
-        found.append(Part(part.body, points, np.asarray(triangles, dtype=np.uint32), part.colour))
-    return found
+        if len(triangles) > most:
+            simplify = import_module("fast_simplification").simplify
+            points, triangles = simplify(points.astype(np.float32), triangles.astype(np.int32), target_count=most)
+        yield Part(part.body, points, np.asarray(triangles, dtype=np.uint32), part.colour)
+
+
+def _most(counts: Sequence[int]) -> int:
+    """The most triangles that a shape may have, so that all together have no more than `TRIANGLES`."""
+    left = TRIANGLES
+    for k, count in enumerate(sorted(counts)):
+        share = left // (len(counts) - k)
+        if count > share:
+            return share
+        left -= count
+    return TRIANGLES
 
 
 def _joined(parts: Sequence[Part]) -> Iterator[Part]:

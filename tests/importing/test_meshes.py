@@ -260,6 +260,16 @@ def test_many_triangles_are_simplified(tmp_path: Path, monkeypatch: pytest.Monke
     assert np.allclose(one.min(axis=0), other.min(axis=0), rtol=0, atol=2.0)
 
 
+@pytest.mark.parametrize(
+    "counts", [[90_000, 90_000], [5, 200_000, 7], [1_000] * 500, [10, 20], [99_999, 1], [1] * 100_000]
+)
+def test_all_together_keep_to_the_bound(counts: list[int]) -> None:
+    """Small shapes stay whole; what the large ones have is used up, but for the rest of a division."""
+    most = meshes._most(counts)
+    kept = sum(min(count, most) for count in counts)
+    assert kept <= meshes.TRIANGLES and kept > min(sum(counts), meshes.TRIANGLES) - len(counts)
+
+
 def test_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that is too large, and shapes that are too many, are left out, with the bound."""
     path = robot(tmp_path)
