@@ -124,9 +124,10 @@ def _model(text: str) -> Model:
     if not found:
         raise GenerationError(f"--model {text}: write body=file.glb, or body=file.glb*1000 for a file in metres")
     try:
-        return Model(found[1], _binary_gltf(Path(found[2])), float(found[3] or 1))
+        scale = float(found[3] or 1)
     except ValueError:
         raise GenerationError(f"--model {text}: {found[3]!r} is no scale") from None
+    return Model(found[1], _binary_gltf(Path(found[2])), scale)
 
 
 def _binary_gltf(path: Path) -> bytes:

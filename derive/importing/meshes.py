@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from importlib import import_module
 from io import BytesIO
@@ -16,7 +16,8 @@ from urllib.parse import unquote, urlsplit
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.importing.arms.lines import arm_of, moved
+from derive.description.joints import Kind
+from derive.importing.arms.lines import Line, arm_of, moved
 from derive.importing.arms.pieces import Simple
 from derive.importing.formats.documents import number, numbers, shown
 from derive.importing.formats.visuals import Colour, Visual, visuals_of
@@ -33,11 +34,25 @@ Indices = NDArray[np.uint32]
 
 
 @dataclass(frozen=True)
+class Move:
+    """A movement along or about a directed line, by multiples of joint values: numbers of axes, with multipliers."""
+
+    is_slide: bool
+    at: tuple[float, ...]
+    along: tuple[float, ...]
+    drives: tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True)
 class Body:
     """A body of a machine: the axes that move it against the one before it, and which of the bodies of that name."""
 
     name: str
     number: int = 0
+    moves: tuple[Move, ...] = ()
+    """The movements of the file by which a link moves against that body, where no body of the machine moves as it does:
+    slides, and turns beside them, have an order of their own in a description.
+    """
 
 
 @dataclass(frozen=True)
@@ -92,8 +107,10 @@ def meshes_of(path: Path, robot: Robot, axes: Sequence[str], chain: Simple, scal
     return Meshes(data, (*said, text))
 
 
-def _bodies(robot: Robot, axes: Sequence[str], chain: Simple, slack: float) -> list[Body | None]:
-    """By the number of moving joints passed: the body of the chain that moves as what is behind them; None if none."""
+def _bodies(robot: Robot, axes: Sequence[str], chain: Simple, slack: float) -> list[Body]:
+    """By the number of moving joints passed: the body of the chain that moves as what is behind them, or the last one
+    before it that does, and the movements since.
+    """
     lines = arm_of(robot).lines
     rng = np.random.default_rng(5)
     rows = [np.zeros(len(axes)), *rng.uniform(-1.0, 1.0, (3, len(axes)))]
@@ -105,17 +122,20 @@ def _bodies(robot: Robot, axes: Sequence[str], chain: Simple, slack: float) -> l
             name = " ".join(axes[k] for k, _ in sorted(piece.drives))
             same = sum(body.name == name for body, _ in known)
             known.append((Body(name, same), [frame @ np.linalg.inv(frames[0]) for frame in frames]))
-    found: list[Body | None] = []
+    found = [Body("base")]
     motions = [np.eye(4)] * len(rows)
-    for line in (None, *lines):
-        if line is not None:
-            motions = [
-                motion @ moved(line, sum(row[k] * multiplier for k, multiplier in line.drives))
-                for motion, row in zip(motions, rows, strict=True)
-            ]
+    for line in lines:
+        motions = [
+            motion @ moved(line, sum(row[k] * multiplier for k, multiplier in line.drives))
+            for motion, row in zip(motions, rows, strict=True)
+        ]
         away, body = min(((_apart(motions, frames), body) for body, frames in known), key=lambda one: one[0])
-        found.append(body if away <= slack else None)
+        found.append(body if away <= slack else replace(found[-1], moves=(*found[-1].moves, _move(line))))
     return found
+
+
+def _move(line: Line) -> Move:
+    return Move(line.kind is Kind.LINEAR, tuple(line.point.tolist()), tuple(line.direction.tolist()), line.drives)
 
 
 def _apart(motions: Sequence[Array], others: Sequence[Array]) -> float:
@@ -123,10 +143,8 @@ def _apart(motions: Sequence[Array], others: Sequence[Array]) -> float:
 
 
 def _parts(
-    path: Path, visual: Visual, body: Body | None, read: Callable[[Path], tuple[Any, ...]], scale: float
+    path: Path, visual: Visual, body: Body, read: Callable[[Path], tuple[Any, ...]], scale: float
 ) -> Iterator[Part]:
-    if body is None:
-        raise UnreadableRobot("no body of the description moves as it does")
     for mesh, colour, unit in _shapes(path, visual, read):
         frame = visual.place.copy()
         frame[:3, :3] = frame[:3, :3] * (unit * scale)
@@ -281,9 +299,7 @@ def glb(parts: Sequence[Part]) -> bytes:
         "asset": {"version": "2.0", "generator": "softkin import --meshes"},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(nodes)))}],
-        "nodes": [
-            {"mesh": k, "name": b.name, "extras": {"body": b.name, "number": b.number}} for k, b in enumerate(nodes)
-        ],
+        "nodes": [{"mesh": k, "name": body.name, "extras": asdict(body)} for k, body in enumerate(nodes)],
         "meshes": [{"primitives": shapes} for shapes in nodes.values()],
         **({"materials": materials} if materials else {}),
         "buffers": [{"byteLength": len(blob)}],

@@ -169,7 +169,7 @@ class Page {
     parts.scale.textContent = isWhole ? `grid ${Number(stage.ground.step.toPrecision(1))} u` : "";
     if (isWhole) {
       this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
-      stage.show(pose.scene, refusal ? model.target : null, (body) => this.refusing.has(body));
+      stage.show(pose.scene, refusal ? model.target : null, (body) => this.refusing.has(body), model.joints(pose.axes));
       stage.figure.mark(refusal ? "refused" : stateOf(pose));
     }
     parts.refusal.hidden = !said;

@@ -10,6 +10,7 @@ import { lights, lookAt, rangeOf } from "./camera.js";
 import { COLOURS, Figure } from "./figure.js";
 import { Ground, lettersOf, triad } from "./ground.js";
 import { Labels } from "./labels.js";
+import { motionOf } from "./meshes.js";
 import { rowsOf } from "./pose.js";
 import { extentOf, pointsOf, quaternionFrom, stand } from "./space.js";
 
@@ -113,9 +114,12 @@ export class Stage {
     this.ask();
   }
 
-  /** Show a scene, and the frame that is wanted where it is not that of the tool. refused: whether a body refuses. */
-  show(scene, target, refused) {
-    this.figure.show(scene, this.size, { refused, hidden: this.#showMeshes(scene, refused) });
+  /**
+   * Show a scene, and the frame that is wanted where it is not that of the tool. refused: whether a body refuses;
+   * values: those of the joints, in radians and lengths.
+   */
+  show(scene, target, refused, values) {
+    this.figure.show(scene, this.size, { refused, hidden: this.#showMeshes(scene, refused, values) });
     this.shown = scene;
     if (!this.isDragged) stand(this.world, scene);
     const tool = scene.bodies[scene.bodies.length - 1].frame;
@@ -201,23 +205,25 @@ export class Stage {
   /** Meshes as `meshesOf` finds them, each in the place of a body; those before them are gone. */
   replaceBodies(found) {
     this.#meshes.forEach(({ holder }) => holder.removeFromParent());
-    this.#meshes = found.map((one) => ({ ...one, holder: Object.assign(new Object3D().add(one.mesh), { userData: { body: one.body } }) }));
+    this.#meshes = found.map((one) => ({ ...one, holder: new Object3D().add(one.mesh) }));
+    for (const { holder, body, moves } of this.#meshes) holder.userData.body = [body, ...moves.map(({ drives }) => drives.map(([k]) => k + 1))].join("+");
     this.#meshes.forEach(({ holder }) => this.world.add(holder));
   }
 
-  /** Meshes where their bodies are, in the colour of a body that refuses. Returns these bodies. */
-  #showMeshes(scene, refused) {
-    return new Set(this.#meshes.map(({ body: name, number, holder }) => {
+  /** Meshes where their bodies are, in the colour of a body that refuses. Returns the bodies that they are. */
+  #showMeshes(scene, refused, values) {
+    return new Set(this.#meshes.map(({ body: name, number, holder, node, moves }) => {
       const body = scene.bodies.filter((one) => one.name === name)[number];
       holder.visible = Boolean(body);
       if (!body) return null;
       this.#place(holder, body.frame, null);
+      if (moves.length && values) motionOf(moves, values).decompose(node.position, node.quaternion, node.scale);
       const { materials } = this.figure;
       holder.traverse((one) => {
         const { kind, own } = one.userData;
         if (kind) one.material = refused(body) ? materials.refused : own ?? materials[kind];
       });
-      return body;
+      return moves.length ? null : body;
     }));
   }
 

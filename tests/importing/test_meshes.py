@@ -125,7 +125,7 @@ def nodes_of(data: bytes) -> dict[tuple[str, int], Array]:
     for node in content["nodes"]:
         shapes = [(p["attributes"]["POSITION"], p["indices"]) for p in content["meshes"][node["mesh"]]["primitives"]]
         points = [values(place).reshape(-1, 3)[values(index)] for place, index in shapes]
-        found[node["extras"]["body"], node["extras"]["number"]] = np.concatenate(points).astype(float)
+        found[node["extras"]["name"], node["extras"]["number"]] = np.concatenate(points).astype(float)
     return found
 
 
