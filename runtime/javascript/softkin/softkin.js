@@ -89,8 +89,8 @@ export class Machine {
   }
 
   /**
-   * The same machine in the other assembly mode, of one that has `startsForward`: its `forward` finds the poses that this
-   * one refuses as those of the other mode. Its home pose is not one of them: give a start.
+   * The same machine in the other assembly mode, of one that has `startsForward`: its `forward` finds the poses that
+   * this one refuses as those of the other mode. Its home pose is not one of them: give a start.
    *
    * @returns {Machine}
    */
