@@ -9,8 +9,10 @@ from pathlib import Path
 
 _BY_PRODUCTS = ("__pycache__", "build", "dist")
 """Folders that running or packing the generated code leaves behind."""
-_BESIDE = ("report", "javascript", "c", "linuxcnc", "view")
-"""Folders that other commands write into the same folder; they write pages (`.html`) there, too."""
+_BESIDE = ("report", "javascript", "c", "linuxcnc", "view", "lib")
+"""Folders that other commands write into the same folder; they write pages (`.html`) there, too. `pip install .` leaves
+`lib` and `bdist.…` in the folder `build`.
+"""
 
 
 class ForeignFolder(Exception):
@@ -43,7 +45,7 @@ def replace_beside_others(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def _is_beside(entry: Path) -> bool:
-    return entry.suffix == ".html" if entry.is_file() else entry.name in _BESIDE
+    return entry.suffix == ".html" if entry.is_file() else entry.name in _BESIDE or entry.name.startswith("bdist.")
 
 
 def replace_folder(folder: Path, files: Mapping[str, bytes]) -> None:

@@ -2,6 +2,7 @@
 
 softkin new my_machine.py                  write a commented description to start from
 softkin like linuxcnc xyzac                name the block for kinematics as a vendor calls them
+softkin import robot.urdf --meshes         write the description of a robot file, and take its meshes to the viewer
 softkin explain my_machine.py              print each step of its derivation, and its branches to be named
 softkin explain --html my_machine.py       the same as a page, with pictures, its Jacobian and its singularities
 softkin check my_machine.py                derive and measure it, and write nothing

@@ -6,7 +6,7 @@ import argparse
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from keyword import iskeyword
 from pathlib import Path
 
@@ -66,8 +66,20 @@ def derive(options: argparse.Namespace) -> int:
         elif any(differences(folder, data)):
             replace_beside_others(folder, data)
         stages.report("write", f"{len(data)} files in {folder}")
+        for hint in _next(path, folder, package, data):
+            stages.line(f"  {hint}")
 
     return each(files, written, options.keep_going, options.traceback)
+
+
+def _next(path: Path, folder: Path, package: str, data: Collection[str]) -> Iterator[str]:
+    """What a user may do with what was written."""
+    picture = next((name for name in sorted(data) if name.endswith(".png")), None)
+    if picture:
+        yield f"picture: {folder / picture}"
+    if f"python/{package}/__init__.py" in data:
+        elsewhere = f"; not beside {path.name}, which Python would find first" if package == path.stem else ""
+        yield f"next: pip install {folder / 'python'}, then import {package} in Python{elsewhere}"
 
 
 def check(options: argparse.Namespace) -> int:

@@ -18,7 +18,7 @@ from derive.faults import GenerationError
 from derive.form.deviations import with_deviations
 from derive.output import write_file
 from derive.pipeline import Built, derive_one, files_of, languages
-from derive.view.node import MissingTool
+from derive.view.node import MissingTool, node
 from derive.view.page import BrokenPage, Content, Model, page
 
 _LANGUAGE = "javascript"
@@ -37,6 +37,7 @@ def view(options: argparse.Namespace) -> int:
         modules = _modules(machine_files(options))
         _write(options.out / "viewer.html", content_of(catalogue(options.mechanisms), modules))
         return 0
+    _node()  # before anything is derived
     files_given = own.described(options.files)
     if options.model and len(files_given) > 1:
         raise GenerationError("--model names a body of one machine: view one file at a time")
@@ -61,6 +62,10 @@ def content_of(entries: Sequence[Entry], modules: Mapping[str, bytes]) -> Conten
 def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[Model, ...]) -> None:
     """The page of one machine of a user."""
     mechanism = with_deviations(load(path)) if options.calibrated else load(path)
+    beside = path.with_suffix(".glb")
+    if beside.is_file():
+        stages.line(f"  with the meshes of {beside}")
+        models = (Model("", _binary_gltf(beside)), *models)
     package = own.package_of(path, None)
     built = derive_one(mechanism, None, stages.report, [_LANGUAGE, "python"])
     files = files_of([built], languages(None, package, [_LANGUAGE]))
@@ -74,6 +79,13 @@ def _own(path: Path, stages: Stages, options: argparse.Namespace, models: tuple[
         models=models,
     )
     _write(options.out / f"{package}.html", content, stages.line)
+
+
+def _node() -> None:
+    try:
+        node()
+    except MissingTool as problem:
+        raise GenerationError(str(problem)) from None
 
 
 def _write(path: Path, content: Content, say: Callable[[str], None] = print) -> None:
@@ -112,9 +124,14 @@ def _model(text: str) -> Model:
     if not found:
         raise GenerationError(f"--model {text}: write body=file.glb, or body=file.glb*1000 for a file in metres")
     try:
-        data, scale = Path(found[2]).read_bytes(), float(found[3] or 1)
+        scale = float(found[3] or 1)
     except ValueError:
         raise GenerationError(f"--model {text}: {found[3]!r} is no scale") from None
+    return Model(found[1], _binary_gltf(Path(found[2])), scale)
+
+
+def _binary_gltf(path: Path) -> bytes:
+    data = path.read_bytes()
     if data[:4] != b"glTF":
-        raise DescriptionError(f"{found[2]} is no binary glTF (.glb)")
-    return Model(found[1], data, scale)
+        raise DescriptionError(f"{path} is no binary glTF (.glb)")
+    return data

@@ -7,6 +7,7 @@ branches: the branches of common arms: shoulder, elbow, wrist
 expressions: amounts of a chain as Python text
 formats/: the readers of robot files
 importing: the whole import: read, undo rounding, bring into the simple form, write, report
+meshes: the meshes of a robot file for the viewer: read, joined by bodies, simplified, in one glTF
 naming: names of axes, parameters and blocks, made of the names in the file
 report: the report of an import for its user
 robot: the content of a robot file, as data that are independent of the file format

@@ -14,7 +14,7 @@ import numpy as np
 from derive.description.errors import printable
 from derive.description.joints import Kind
 from derive.importing.arms.lines import Arm, arm_of, place_names
-from derive.importing.arms.pieces import simple
+from derive.importing.arms.pieces import Simple, simple
 from derive.importing.arms.rounded import nearly, snapped_robot
 from derive.importing.arms.snapping import SNAP, Snapped, aligned
 from derive.importing.arms.tasks import Followed, followed, on_axis
@@ -23,6 +23,7 @@ from derive.importing.formats.documents import parsed
 from derive.importing.formats.mjcf import read_mjcf
 from derive.importing.formats.tables import read_table
 from derive.importing.formats.urdf import read_urdf
+from derive.importing.meshes import Meshes, meshes_of
 from derive.importing.naming import axis_names
 from derive.importing.report import Bounds, bounds, closed_form, neighbours, redundant, snaps, weak_axes
 from derive.importing.robot import Robot, Rods, UnreadableRobot, about
@@ -63,6 +64,8 @@ class Imported:
     axes: tuple[str, ...]
     task: Followed
     """The task; the description's tip is that of the file, moved and turned as it says."""
+    chain: Simple | None = None
+    """The chain that was written; None for rods."""
 
 
 def import_robot(path: Path, options: Options = Options()) -> Imported:  # noqa: B008
@@ -126,7 +129,7 @@ def _imported(robot: Robot, options: Options) -> Imported:
         ]
     )
     text = written(robot, description, task, options.unit, notes)
-    return Imported(description.name, text, _shown(report), moved, found, robot, axes, task)
+    return Imported(description.name, text, _shown(report), moved, found, robot, axes, task, chain)
 
 
 def _with_rods(robot: Robot, rods: Rods, options: Options) -> Imported:
@@ -235,6 +238,8 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument("--unit", choices=tuple(UNITS), default="mm", help="the unit of length that is written")
     command.add_argument("--hold", nargs="+", default=[], metavar="AXIS", help="axes that the inverse does not move")
+    text = "take the meshes of a URDF along, into a .glb beside the description: `softkin view` shows them"
+    command.add_argument("--meshes", action="store_true", help=text)
     command.add_argument("--out", type=Path, metavar="FILE", help="the description that is written")
 
 
@@ -243,12 +248,25 @@ def run(options: argparse.Namespace) -> int:
     chosen = Options(options.base, options.tip, options.snap, options.unit, tuple(options.hold))
     imported = import_robot(options.robot, chosen)
     target = options.out or Path(f"{_file_name(options.robot.stem)}.py")
-    if target.exists():
-        raise UnreadableRobot(f"{target}: exists, and may have been edited: name another file with --out")
+    meshes = imported_meshes(options.robot, imported, options.unit) if options.meshes else None
+    for file in (target, target.with_suffix(".glb")) if meshes and meshes.data else (target,):
+        if file.exists():
+            raise UnreadableRobot(f"{file}: exists, and may have been edited: name another file with --out")
     target.write_text(imported.text, encoding="utf-8")
-    print(printable(imported.report))
+    print(printable("\n".join([imported.report, *map(_shown, meshes.report if meshes else ())])))
     print(f"Written: {target}. Read it, edit it, then derive it.")
+    if meshes and meshes.data:
+        target.with_suffix(".glb").write_bytes(meshes.data)
+        print(f"Written: {target.with_suffix('.glb')}. `softkin view {target}` shows it on the machine.")
     return 0
+
+
+def imported_meshes(path: Path, imported: Imported, unit: str) -> Meshes:
+    """The meshes of a URDF that was imported. Raises `UnreadableRobot` without the packages that read them."""
+    if imported.chain is None or not imported.robot.source.endswith("(URDF)"):
+        return Meshes(b"", ("No mesh was read: meshes are taken from a URDF alone.",))
+    slack = 2.0 * (imported.bounds.position + imported.bounds.rotation) + 1e-6 * arm_of(imported.robot).size
+    return meshes_of(path, imported.robot, imported.axes, imported.chain, UNITS[unit], slack)
 
 
 def _file_name(stem: str) -> str:

@@ -32,10 +32,12 @@ class BrokenPage(Exception):
 
 @dataclass(frozen=True)
 class Model:
-    """A mesh of the user's own that replaces a body."""
+    """A mesh of the user's own that replaces a body, or those of an imported robot."""
 
     body: str
-    """The name of the body in the viewer: "base", the axes that move it, "plate", "tool"."""
+    """The name of the body in the viewer: "base", the axes that move it, "plate", "tool". Empty for a file of
+    `softkin import --meshes`: its nodes name the bodies, and stand in the frame of the base, all axes at zero.
+    """
     data: bytes
     """The file, binary glTF."""
     scale: float = 1.0

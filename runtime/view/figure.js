@@ -71,14 +71,14 @@ export class Figure {
     this.materials.joint.color.set((state !== "refused" && STATES[state]) || this.colours.joint);
   }
 
-  /** Stand as a scene says. hidden: names of bodies that a mesh of their own shows; refused: whether a body refuses. */
+  /** Stand as a scene says. hidden: bodies that a mesh of their own shows; refused: whether a body refuses. */
   show(scene, size, { hidden = new Set(), refused = () => false } = {}) {
     this.#used.clear();
     const { shapes, isTool } = shapesOf(scene);
     this.shapes = shapes;
     let plates = 0;
     scene.bodies.forEach((body, i) => {
-      if (hidden.has(body.name) || (this.isGhost && body.kind === "base")) return;
+      if (hidden.has(body) || (this.isGhost && body.kind === "base")) return;
       const material = refused(body) ? "refused" : body.kind;
       const thick = size * THICK[body.kind] * (this.isGhost ? GHOST : 1);
       const isSpindle = isTool && i === scene.bodies.length - 2;

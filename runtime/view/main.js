@@ -9,6 +9,7 @@ import { MachineChoice } from "./machines.js";
 import { meshesOf } from "./meshes.js";
 import { Model, inWords } from "./model.js";
 import { LinePanel } from "./plots.js";
+import { PosesPanel } from "./poses.js";
 import { refusing } from "./refusing.js";
 import { DimensionsPanel, MarginsPanel, SolutionsPanel, nearestOf, stateOf } from "./said.js";
 import { SlicePanel } from "./slice.js";
@@ -31,7 +32,10 @@ class Page {
     this.stage = new Stage(this.parts.canvas, this.parts.labels, {
       onDrag: (frame, isFinished) => (isFinished ? this.#show("pose") : this.model.moveTo(frame)),
       onGhost: (index) => this.model.take(this.ghosts[index].axes),
-      onAssembly: () => this.model.setParameter(this.model.description.assembly, !this.model.parameters[this.model.description.assembly]),
+      onAssembly: () => {
+        const { assembly } = this.model.description;
+        if (assembly) this.model.setParameter(assembly, !this.model.parameters[assembly]);
+      },
       onView: () => this.#remember(),
       onDrawn: (isInside) => { this.parts.outside.hidden = isInside; },
     });
@@ -64,7 +68,8 @@ class Page {
     const { model, stage } = this;
     this.solutions = new SolutionsPanel(model);
     const dimensions = new DimensionsPanel(model);
-    const first = [this.solutions, new AxesPanel(model), new ToolPanel(model), new MarginsPanel(model), new ConfigurationPanel(model), dimensions];
+    this.poses = new PosesPanel(model, () => this.#otherPoses());
+    const first = [this.solutions, new AxesPanel(model), new ToolPanel(model), new MarginsPanel(model), new ConfigurationPanel(model), this.poses, dimensions];
     const line = new LinePanel(model, stage);
     this.line = line;
     this.slice = new SlicePanel(model, stage);
@@ -164,7 +169,7 @@ class Page {
     parts.scale.textContent = isWhole ? `grid ${Number(stage.ground.step.toPrecision(1))} u` : "";
     if (isWhole) {
       this.refusing = said ? refusing(said.reason, pose.scene.bodies, model.description.margins) : new Set();
-      stage.show(pose.scene, refusal ? model.target : null, { refused: (body) => this.refusing.has(body) });
+      stage.show(pose.scene, refusal ? model.target : null, (body) => this.refusing.has(body), model.joints(pose.axes));
       stage.figure.mark(refusal ? "refused" : stateOf(pose));
     }
     parts.refusal.hidden = !said;
@@ -192,13 +197,22 @@ class Page {
     const scenes = this.ghosts.map((slot) => this.model.machine.scene(slot.axes, this.model.pose.frame));
     this.ghosts = this.ghosts.filter((_, i) => !scenes[i].status);
     this.stage.showGhosts(scenes.filter((scene) => !scene.status));
-    this.stage.showAssembly(this.hasGhosts ? this.model.otherAssembly() : null);
+    this.#otherPoses();
+  }
+
+  /** Poses at the same axes: the other assembly mode, or those that were found. */
+  #otherPoses() {
+    const other = this.model.otherAssembly();
+    const others = other ? [{ scene: other, text: "other assembly mode" }] : this.poses.shown;
+    this.stage.showOthers(this.hasGhosts ? others : []);
   }
 
   async #meshes() {
-    this.stage.clearBodies();
-    if (!this.data.models.length || !this.model.pose) return;
-    for (const { body, mesh } of await meshesOf(this.data.models)) this.stage.replaceBody(body, mesh);
+    const { data, model, stage } = this;
+    if (!data.models.length || !model.pose) return;
+    const { machine } = model.module.create(model.nominal);
+    stage.replaceBodies(await meshesOf(data.models, machine.scene(model.axes.map(() => 0))));
+    if (!stage.view) stage.fit(model.pose.scene);
     this.#show("pose");
   }
 

@@ -151,6 +151,11 @@ export class Model {
     return scene && !scene.status ? scene : null;
   }
 
+  /** Axis values in radians and lengths. */
+  joints(axes) {
+    return axes.map((value, i) => (this.description.axes[i].unit === "deg" ? (value * Math.PI) / 180 : value));
+  }
+
   /** What a slot is called: the names of its branches. */
   nameOf(branches) {
     const words = branches.map((byte, i) => {

@@ -36,9 +36,10 @@ export function stand(object, scene) {
   object.updateMatrixWorld(true);
 }
 
-/** The middle of all that is drawn inside an object, and the radius of a ball around it. */
-export function extentOf(scene, object) {
+/** The middle of all that is drawn inside an object, and of boxes, and the diameter of a ball around it. */
+export function extentOf(scene, object, boxes = []) {
   const points = pointsOf(scene).map((point) => (object ? new Vector3(...point).applyMatrix4(object.matrixWorld).toArray() : point));
+  points.push(...boxes.flatMap(({ min, max }) => [min.toArray(), max.toArray()]));
   const low = [0, 1, 2].map((k) => Math.min(...points.map((point) => point[k])));
   const high = [0, 1, 2].map((k) => Math.max(...points.map((point) => point[k])));
   const centre = low.map((value, k) => (value + high[k]) / 2);

@@ -1,7 +1,7 @@
 /** The picture: camera, light, floor, the machine, its ghosts, the tool's frame that is dragged, a path, a slice. */
 
 import {
-  BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Object3D,
+  Box3, BufferAttribute, BufferGeometry, CanvasTexture, DoubleSide, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, Object3D,
   PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Vector2, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -10,6 +10,7 @@ import { lights, lookAt, rangeOf } from "./camera.js";
 import { COLOURS, Figure } from "./figure.js";
 import { Ground, lettersOf, triad } from "./ground.js";
 import { Labels } from "./labels.js";
+import { motionOf } from "./meshes.js";
 import { rowsOf } from "./pose.js";
 import { extentOf, pointsOf, quaternionFrom, stand } from "./space.js";
 
@@ -22,8 +23,10 @@ const OUTSIDE = 1.02;
 
 export class Stage {
   #ghosts = [];
+  #others = [];
+  others = [];
   #isAsked = false;
-  #meshes = new Map();
+  #meshes = [];
   #fitted = null;
 
   /** heard: {onDrag(frame, isFinished), onGhost(index), onAssembly(), onView(), onDrawn(isInside)}. */
@@ -47,9 +50,8 @@ export class Stage {
     this.scene.add(this.floor, this.world);
     this.triad = triad();
     this.origin = triad();
-    this.assembly = new Figure({ isGhost: true, ghost: "assembly" });
-    this.assembly.group.visible = false;
-    this.world.add(this.assembly.group, this.extra, this.triad, this.origin);
+    this.assembly = new Group(); // ghosts of other poses at the same axes
+    this.world.add(this.assembly, this.extra, this.triad, this.origin);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.listenToKeyEvents(canvas);
     this.orbit.addEventListener("change", () => {
@@ -65,7 +67,7 @@ export class Stage {
   /** The colours of a theme, "light" or "dark". */
   paint(theme) {
     this.theme = theme;
-    [this.figure, this.assembly, ...this.#ghosts].forEach((figure) => figure.paint(COLOURS[theme]));
+    [this.figure, ...this.#ghosts, ...this.#others].forEach((figure) => figure.paint(COLOURS[theme]));
     if (this.extent) this.#layFloor();
     this.ask();
   }
@@ -73,7 +75,9 @@ export class Stage {
   /** Take the size of a machine from its scene. */
   measure(scene) {
     stand(this.world, scene);
-    this.extent = extentOf(scene, this.world);
+    this.#showMeshes(scene, () => false);
+    this.world.updateMatrixWorld(true);
+    this.extent = extentOf(scene, this.world, this.#meshes.map(({ holder }) => new Box3().setFromObject(holder)));
     this.size = this.extent.size;
     rangeOf(this.camera, this.size);
     this.#layFloor();
@@ -110,41 +114,42 @@ export class Stage {
     this.ask();
   }
 
-  /** Show a scene, and the frame that is wanted where it is not that of the tool. */
-  show(scene, target, options) {
-    this.figure.show(scene, this.size, { ...options, hidden: new Set(this.#meshes.keys()) });
+  /**
+   * Show a scene, and the frame that is wanted where it is not that of the tool. refused: whether a body refuses;
+   * values: those of the joints, in radians and lengths.
+   */
+  show(scene, target, refused, values) {
+    this.figure.show(scene, this.size, { refused, hidden: this.#showMeshes(scene, refused, values) });
     this.shown = scene;
     if (!this.isDragged) stand(this.world, scene);
     const tool = scene.bodies[scene.bodies.length - 1].frame;
     this.#place(this.triad, tool, 0.14);
-    this.#meshes.forEach((mesh, name) => {
-      const body = scene.bodies.find((one) => one.name === name);
-      mesh.visible = Boolean(body);
-      if (body) this.#place(mesh, body.frame, null);
-    });
     if (!this.isDragged) this.#place(this.handle, target ?? tool, null);
     this.ask();
   }
 
   /** Ghosts of scenes, each with the number by which it is taken. */
   showGhosts(scenes) {
-    while (this.#ghosts.length < scenes.length) {
-      const ghost = new Figure({ isGhost: true, colours: COLOURS[this.theme] });
-      this.#ghosts.push(ghost);
-      this.world.add(ghost.group);
-    }
-    this.#ghosts.forEach((ghost, i) => {
-      ghost.group.visible = i < scenes.length;
-      if (ghost.group.visible) ghost.show(scenes[i], this.size);
-    });
-    this.ask();
+    this.#fill(this.#ghosts, scenes, "ghost", this.world);
   }
 
-  /** The scene of the same axes in the other assembly mode, seen through; null takes it away. */
-  showAssembly(scene) {
-    this.assembly.group.visible = Boolean(scene);
-    this.other = scene;
-    if (scene) this.assembly.show(scene, this.size);
+  /** Other poses at the same axes, seen through: {scene, text}. The ground lies below them. */
+  showOthers(others) {
+    const isAnother = others.length !== this.others.length;
+    this.others = others;
+    if (isAnother) this.#layFloor();
+    this.#fill(this.#others, others.map(({ scene }) => scene), "assembly", this.assembly);
+  }
+
+  #fill(figures, scenes, ghost, parent) {
+    while (figures.length < scenes.length) {
+      figures.push(new Figure({ isGhost: true, ghost, colours: COLOURS[this.theme] }));
+      parent.add(figures.at(-1).group);
+    }
+    figures.forEach((figure, i) => {
+      figure.group.visible = i < scenes.length;
+      if (figure.group.visible) figure.show(scenes[i], this.size);
+    });
     this.ask();
   }
 
@@ -197,17 +202,29 @@ export class Stage {
     this.ask();
   }
 
-  /** A mesh of the user's own in the place of a body. */
-  replaceBody(name, mesh) {
-    const holder = new Object3D();
-    holder.add(mesh);
-    this.#meshes.set(name, holder);
-    this.world.add(holder);
+  /** Meshes as `meshesOf` finds them, each in the place of a body; those before them are gone. */
+  replaceBodies(found) {
+    this.#meshes.forEach(({ holder }) => holder.removeFromParent());
+    this.#meshes = found.map((one) => ({ ...one, holder: new Object3D().add(one.mesh) }));
+    for (const { holder, body, moves } of this.#meshes) holder.userData.body = [body, ...moves.map(({ drives }) => drives.map(([k]) => k + 1))].join("+");
+    this.#meshes.forEach(({ holder }) => this.world.add(holder));
   }
 
-  clearBodies() {
-    this.#meshes.forEach((mesh) => mesh.removeFromParent());
-    this.#meshes.clear();
+  /** Meshes where their bodies are, in the colour of a body that refuses. Returns the bodies that they are. */
+  #showMeshes(scene, refused, values) {
+    return new Set(this.#meshes.map(({ body: name, number, holder, node, moves }) => {
+      const body = scene.bodies.filter((one) => one.name === name)[number];
+      holder.visible = Boolean(body);
+      if (!body) return null;
+      this.#place(holder, body.frame, null);
+      if (moves.length && values) motionOf(moves, values).decompose(node.position, node.quaternion, node.scale);
+      const { materials } = this.figure;
+      holder.traverse((one) => {
+        const { kind, own } = one.userData;
+        if (kind) one.material = refused(body) ? materials.refused : own ?? materials[kind];
+      });
+      return moves.length ? null : body;
+    }));
   }
 
   /** Draw soon, once. */
@@ -265,7 +282,9 @@ export class Stage {
   }
 
   #layFloor() {
-    this.ground.lay(this.extent, this.theme);
+    const { low, size, centre } = this.extent;
+    const depths = this.others.map(({ scene }) => extentOf(scene, this.world).low[2]);
+    this.ground.lay({ low: [low[0], low[1], Math.min(low[2], ...depths)], size, centre }, this.theme);
     this.origin.scale.setScalar(BASE * this.size);
   }
 
@@ -280,7 +299,8 @@ export class Stage {
     ray.setFromCamera(point, this.camera);
     const shown = this.#ghosts.filter((ghost) => ghost.group.visible).map((ghost) => ghost.group);
     const hit = ray.intersectObjects(shown, true).find(({ object }) => object.visible);
-    if (!hit && this.other && ray.intersectObject(this.assembly.group, true).some(({ object }) => object.visible)) this.heard.onAssembly();
+    const others = this.#others.filter((other) => other.group.visible).map((other) => other.group);
+    if (!hit && ray.intersectObjects(others, true).some(({ object }) => object.visible)) this.heard.onAssembly();
     if (!hit) return;
     this.heard.onGhost(shown.findIndex((group) => group.children.includes(hit.object)));
   }
@@ -294,7 +314,7 @@ export class Stage {
       return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
     };
     const letters = lettersOf(BASE * this.size).map(({ text, at }) => ({ text, at: placed(at).map((value) => value - 7), isFixed: true }));
-    const other = this.other?.bodies.slice(-1).map(({ frame }) => ({ text: "other assembly mode", at: placed(frame.position) })) ?? [];
+    const other = this.others.map(({ text, scene }) => ({ text, at: placed(scene.bodies.at(-1).frame.position) }));
     const joints = this.shown.joints.map((joint) => ({ text: joint.joints.join(" "), at: placed(joint.at) }));
     const seen = [...letters, ...joints, ...other].filter(({ at: [x, y] }) => x > 0 && x < width && y > -ABOVE && y < height);
     this.names.show(seen, placed(this.handle.position.toArray()));

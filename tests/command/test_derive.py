@@ -56,7 +56,9 @@ def scara(folder: Folder) -> Folder:
     said = folder.run("derive", "my_scara.py", "--out", "build")
     assert (said.status, said.err) == (0, "")
     stages = [line.split()[0] for line in said.out.splitlines()[2:]]
-    assert stages == ["derive", "measure", "draw", "write"], said.out
+    assert stages == ["derive", "measure", "draw", "write", "picture:", "next:"], said.out
+    assert "picture: build/st/pictures/MyScara.png" in said.out
+    assert "next: pip install build/python, then import my_scara in Python; not beside my_scara.py" in said.out
     assert "144 poses" in said.out and "2 solutions" in said.out
     return folder
 
@@ -102,13 +104,14 @@ def test_deriving_again_changes_nothing_and_another_machine_does_not_replace_it(
 
 
 def test_what_other_commands_write_into_the_same_folder_stays(folder: Folder) -> None:
-    """`explain --html`, `view`, and another language: all of them write into build, in any order."""
+    """`explain --html`, `view`, another language, and pip: all of them write into build, in any order."""
     folder.write("rail.py", RAIL)
-    for name in ("report/Rail.html", "rail.html", "javascript/rail.js"):
+    others = ("report/Rail.html", "rail.html", "javascript/rail.js", "lib/derive/a.py", "bdist.linux-x86_64/a")
+    for name in others:
         folder.write(f"build/{name}", "kept")
     for _ in range(2):
         assert folder.run("derive", "rail.py", "--out", "build").status == 0
-        assert {n.split("/")[0] for n in folder.names("build")} == {"python", "st", "report", "rail.html", "javascript"}
+        assert {n.split("/")[0] for n in folder.names("build")} == {"python", "st", *(n.split("/")[0] for n in others)}
     folder.write("build/mine.txt", "mine")
     said = folder.run("derive", "rail.py", "--out", "build")
     assert said.status == 2 and "build holds 'mine.txt', which was not generated: it is not replaced" in said.err

@@ -57,7 +57,7 @@ async function everyMachine() {
         return { text: one.textContent, kind: one.className, x, y, width, height };
       });
       const isOutside = !document.getElementById("outside").hidden;
-      const others = [stage.floor, stage.transformed, stage.triad, stage.origin, stage.assembly.group];
+      const others = [stage.floor, stage.transformed, stage.triad, stage.origin, stage.assembly];
       const were = others.map((one) => one.visible);
       others.forEach((one) => { one.visible = false; });
       stage.showGhosts([]);
@@ -401,14 +401,34 @@ async function assembled() {
   seen.assembly = { before: await state(page), labels: await page.locator("#labels span:not([hidden])").allTextContents() };
   Object.assign(seen.assembly, await page.evaluate(() => {
     const { stage } = softkinPage;
-    const { position, rotation } = stage.other.bodies.at(-1).frame;
+    const { position, rotation } = stage.others[0].scene.bodies.at(-1).frame;
     return { there: position, click: stage.placeOf(position.map((value, i) => value - 0.04 * stage.size * rotation[i][2])) };
   }));
   await page.mouse.click(...seen.assembly.click);
   await settled(page);
   seen.assembly.after = await state(page);
   await page.locator("#ghosts").click();
-  seen.assembly.hidden = await page.evaluate(() => !softkinPage.stage.assembly.group.visible);
+  seen.assembly.hidden = await page.evaluate(() => !softkinPage.stage.others.length);
+  await page.context().close();
+}
+
+/** All poses of a hexapod at its axes, found on demand; one alone; gone when it moves; other machines have no such search. */
+async function everyPose() {
+  const page = await opened("#machine=Kin_Hexapod");
+  await page.getByRole("button", { name: "Find all poses" }).click();
+  await page.waitForFunction(() => softkinPage.poses.said.textContent.includes(" found, "));
+  const others = () => page.evaluate(() => ({
+    frames: softkinPage.stage.others.map(({ scene }) => scene.bodies.at(-1).frame), drawn: softkinPage.stage.assembly.children.filter(({ visible }) => visible).length,
+  }));
+  seen.poses = { ...(await state(page)), said: await page.evaluate(() => softkinPage.poses.said.textContent), all: await others() };
+  const entries = page.getByRole("list", { name: "Poses at these axes" }).getByRole("button");
+  seen.poses.listed = await entries.allTextContents();
+  await entries.nth(2).click();
+  seen.poses.alone = await others();
+  await page.locator("#axis-0").press("ArrowUp");
+  seen.poses.moved = { ...(await others()), isListed: await entries.count() > 0 };
+  await page.evaluate(() => softkinPage.model.open("Kin_ArticulatedRobot_6DOF"));
+  seen.poses.ofAnArm = await page.getByRole("button", { name: "Find all poses" }).isVisible();
   await page.context().close();
 }
 
@@ -479,7 +499,7 @@ async function ownAgain() {
   await page.context().close();
 }
 
-for (const work of [live, ownAgain, chosen, left, assembled, tilted, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
+for (const work of [live, ownAgain, chosen, left, assembled, everyPose, tilted, everyMachine, dragged, ownAgain, typed, line, ownAgain, marks, slice, own]) {
   try {
     await work();
   } catch (error) {

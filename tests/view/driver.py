@@ -33,7 +33,7 @@ PACKAGES = ROOT / ".view-tests"
 """Where npm puts the driver and the browser, once."""
 BROWSER = ROOT / "build" / "view" / "browser.txt"
 """Which browser ran, in one line, or that none could be had; the summary of a test run prints it."""
-SCRIPTS = ("browser.mjs", "drive.mjs", "follow.mjs", "frame.mjs", "shown.mjs")
+SCRIPTS = ("browser.mjs", "drive.mjs", "follow.mjs", "frame.mjs", "meshes.mjs", "shown.mjs")
 
 
 def prepared() -> Path:

@@ -4,6 +4,7 @@ import { pythonOf } from "./copy.js";
 import { alongLine } from "./line.js";
 import { Live } from "./live.js";
 import { Model } from "./model.js";
+import { posesFrom } from "./search.js";
 import { serve } from "./worker.js";
 
 globalThis.location = { protocol: "http:", host: "page" };
@@ -65,6 +66,15 @@ export function copied({ name, changes, words }) {
 /** The limits of a machine that a controller names. */
 export function limitsOfLive({ machine, name }) {
   return followed(machine, name)[0].machine.limits;
+}
+
+/** All poses that are found of a platform at its axes, from how many starts, and where it stands. */
+export function posesOf({ name, parameters, axes }) {
+  const model = new Model();
+  model.open(name, { parameters, axes });
+  const { frame, scene } = model.pose;
+  const points = scene.bodies.flatMap((body) => [body.frame.position, ...body.lines.flat()]);
+  return { ...[...posesFrom(model.machine, axes, points, frame)].at(-1), frame };
 }
 
 /** What a fragment of the address says. */

@@ -1,8 +1,6 @@
 """Pages of the viewer: made, opened, and what is seen on them."""
 
-import json
 import shutil
-import struct
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,6 +15,7 @@ from derive.command.catalogue import OUTPUT
 from derive.command.view import PACKAGES, content_of
 from derive.emit.javascript import package as javascript
 from derive.emit.language import RUNTIME, Part
+from derive.importing import meshes
 from derive.pipeline import work_of
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of, part_of, written
@@ -28,24 +27,8 @@ _CORNERS = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0))
 
 def triangle() -> bytes:
     """A triangle with legs of 0.1, whose node is called "own"."""
-    points = b"".join(struct.pack("<3f", *corner) for corner in _CORNERS)
-    data = {
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0, "name": "own"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "buffers": [{"byteLength": len(points)}],
-        "bufferViews": [{"buffer": 0, "byteLength": len(points)}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0.1, 0.1, 0]}
-        ],
-    }
-    text = json.dumps(data).encode()
-    text += b" " * (-len(text) % 4)
-    length = 12 + 8 + len(text) + 8 + len(points)
-    head = struct.pack("<4sII", b"glTF", 2, length)
-    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(points), b"BIN\0") + points
+    triangles = np.array([[0, 1, 2]], dtype=np.uint32)
+    return meshes.glb([meshes.Part(meshes.Body("own"), np.array(_CORNERS), triangles, None)])
 
 
 def kept_modules() -> Mapping[str, bytes] | None:
@@ -78,19 +61,20 @@ def own_page(folder: Path) -> Path:
     A1 has limits; A2 is a mesh in metres; the second link is called as no keyword of Python can be.
     """
     (folder / "own.glb").write_bytes(triangle())
-    _run(folder, "new", "my_machine.py")
+    run_derive(folder, "new", "my_machine.py")
     path = folder / "my_machine.py"
     text = path.read_text(encoding="utf-8").replace('"link_length_2"', '"lambda"')
     path.write_text(text.replace('"Arm 1 about Z")', '"Arm 1 about Z", limits=(-150, 150))'), encoding="utf-8")
-    _run(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
-    _run(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
+    run_derive(folder, "derive", "my_machine.py", "--out", "pages", "--language", "python")
+    run_derive(folder, "view", "my_machine.py", "--out", "pages", "--model", "A2=own.glb*1000")
     return folder / "pages" / "my_machine.html"
 
 
-def _run(folder: Path, *arguments: str) -> None:
+def run_derive(folder: Path, *arguments: str) -> str:
+    """Run a command; what it prints."""
     command = [sys.executable, "-m", "derive", *arguments]
     environment = {"PYTHONPATH": str(OUTPUT.parent), "PATH": "", "HOME": str(folder)}
-    output_of(command, cwd=folder, env=environment)
+    return output_of(command, cwd=folder, env=environment)
 
 
 ROOT = Path(__file__).parents[2]

@@ -9,10 +9,28 @@ import softkin
 
 from tests.mechanisms import catalogue, named
 from tests.view.pages import ARM, Seen, confirm, frame_of, robot_of
+from tests.view.test_poses import points_of
 
 pytestmark = pytest.mark.slow
 EACH = pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue()])
 SCARA = "Kin_Scara3_Z"
+
+
+def test_all_poses_of_a_platform(seen: Seen) -> None:
+    """Each leg has its length in every pose that is shown; how they were found is said; a click shows one alone."""
+    found = seen["poses"]
+    base, platform = (points_of(found["parameters"], side, "xyz", 6) for side in ("base", "platform"))
+    frames = found["all"]["frames"]
+    for frame in frames:
+        ends = np.array(frame["position"]) + platform @ np.array(frame["rotation"]).T
+        assert np.allclose(np.linalg.norm(ends - base, axis=1), found["axes"], rtol=0, atol=1e-6)
+    count = len(found["listed"])
+    assert count == len(frames) + 1 == found["all"]["drawn"] + 1 and count >= 4
+    assert found["said"].startswith(f"{count} poses found, by Newton's method from 1000 starts")
+    assert found["said"].endswith("This is a search, no proof: there may be more.")
+    assert sum("the pose that is shown" in text for text in found["listed"]) == 1
+    assert len(found["alone"]["frames"]) == found["alone"]["drawn"] == 1
+    assert found["moved"] == {"frames": [], "drawn": 0, "isListed": False} and not found["ofAnArm"]
 
 
 def test_the_page_opens_with_the_six_axis_arm(seen: Seen) -> None:

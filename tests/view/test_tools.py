@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from derive.command import view
+from derive.command.line import main
+from derive.command.new import description
 from derive.view import node
 from derive.view.node import PACKAGES, MissingTool, installed
 from tests.view import driver as told
@@ -83,3 +86,16 @@ def test_a_missing_browser(is_ci: bool, tmp_path: Path, monkeypatch: pytest.Monk
         available(nothing)
     line = "the viewer was not shown: no browser: ENOTFOUND at a line at another\n"
     assert (tmp_path / "build" / "browser.txt").read_text() == line
+
+
+def test_a_missing_tool_is_told_before_anything_is_derived(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing() -> Path:
+        raise MissingTool("the viewer needs Node.js: get it")
+
+    monkeypatch.setattr(view, "node", missing)
+    (tmp_path / "my_machine.py").write_text(description("my_machine.py", "MyMachine"))
+    assert main(["view", str(tmp_path / "my_machine.py")]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and "error: the viewer needs Node.js: get it" in err

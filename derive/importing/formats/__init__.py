@@ -11,4 +11,5 @@ tables: tables of Denavit-Hartenberg parameters, in TOML or CSV
 transmissions: the transmissions of a URDF, which are reported but do not enter the chain, and joints that follow others
 trees: a robot as a tree of links, and the joints on the path between two links
 urdf: URDF: the chain between two links
+visuals: the shapes of a URDF's links: where each stands at joint values of zero, and how many joints move it
 """

@@ -52,7 +52,7 @@ def read_urdf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
     if root.tag != "robot":
         raise UnreadableRobot(f"{path}: its root is <{root.tag}>, not <robot>: this is no URDF")
     refuse_macros(path, root, (base, tip))
-    edges = [_edge(path, joint) for joint in root.findall("joint")]
+    edges = [edge_of(path, joint) for joint in root.findall("joint")]
     links = [required(path, link, "name") for link in root.findall("link")]
     if not links:
         raise UnreadableRobot(f"{path}: has no links")
@@ -107,7 +107,8 @@ def _loop_notes(
     yield from loop_notes(path, inside, Joints(moving, followers, driven))
 
 
-def _edge(path: Path, joint: Element) -> Edge:
+def edge_of(path: Path, joint: Element) -> Edge:
+    """The joint between its two links."""
     name = required(path, joint, "name")
     ends = []
     for tag in ("parent", "child"):
@@ -121,7 +122,7 @@ def _edge(path: Path, joint: Element) -> Edge:
 def _step(path: Path, joint: Element, followers: Mapping[str, Follower], scale: float) -> Step:
     refuse_macros_inside(path, joint)
     name = joint.get("name", "")
-    places = _places(path, joint, name, scale)
+    places = places_of(path, joint, f"joint {name!r}", scale)
     kind = _kind(path, joint)
     if kind is None:
         return Step(name, places)
@@ -144,12 +145,13 @@ def _kind(path: Path, joint: Element) -> Kind | None:
     return _KINDS[stated]
 
 
-def _places(path: Path, joint: Element, name: str, scale: float) -> tuple[Place, ...]:
-    origin = joint.find("origin")
+def places_of(path: Path, element: Element, what: str, scale: float) -> tuple[Place, ...]:
+    """The origin of a joint or of a shape; `what` names it in a message."""
+    origin = element.find("origin")
     if origin is None:
         return ()
-    x, y, z = numbers(path, origin, "xyz", f"joint {name!r}", (0.0, 0.0, 0.0))
-    angles = numbers(path, origin, "rpy", f"joint {name!r}", (0.0, 0.0, 0.0))
+    x, y, z = numbers(path, origin, "xyz", what, (0.0, 0.0, 0.0))
+    angles = numbers(path, origin, "rpy", what, (0.0, 0.0, 0.0))
     rounded = roundings(origin, "rpy", 3, with_coarse=True)
     turns = tuple(Turned(k, angles[k], rounded[k]) for k in (2, 1, 0) if angles[k] != 0.0)
     return (Shifted((x * scale, y * scale, z * scale)), *turns)
@@ -222,7 +224,11 @@ def _left_out(root: Element, passed: list[str], used: Mapping[str, None]) -> tup
 
 
 def _ignored(root: Element) -> tuple[str, ...]:
-    tags = {"inertial": "masses", "visual": "meshes", "collision": "collision bodies"}
+    tags = {
+        "inertial": "masses",
+        "visual": "meshes (`--meshes` takes them to the viewer)",
+        "collision": "collision bodies",
+    }
     found = [word for tag, word in tags.items() if root.find(f"link/{tag}") is not None]
     notes = [f"Not read, because kinematics does not need them: {', '.join(found)}."] if found else []
     return tuple(notes)

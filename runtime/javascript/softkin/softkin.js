@@ -89,6 +89,17 @@ export class Machine {
   }
 
   /**
+   * The same machine in the other assembly mode, of one that has `startsForward`: its `forward` finds the poses that
+   * this one refuses as those of the other mode. Its home pose is not one of them: give a start.
+   *
+   * @returns {Machine}
+   */
+  inOtherAssembly() {
+    const constants = { ...this._k, assembly_sign: -this._k.assembly_sign };
+    return new Machine(this.description, this._programs, this.parameters, { constants, windows: [...this.limits] });
+  }
+
+  /**
    * The axis values that reach a frame.
    *
    * @param {Frame} frame - a rotation with few exact digits, as from single precision, is repaired
