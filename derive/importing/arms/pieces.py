@@ -4,8 +4,9 @@ other; what is nearly zero there, or nearly a simple angle, is that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import sympy as sp
@@ -72,29 +73,29 @@ def simple(arm: Arm, axes: Sequence[str], limit: float, *, about_z: bool) -> Sim
     """
     symbols = [sp.Symbol(name, real=True) for name in axes]
     own = _in_form(arm, symbols)
-    pieces: tuple[Piece, ...] = ()
+    before: Callable[[Sequence[float]], Array] = partial(forward, arm)
     moved: list[Snapped] = []
     for _ in range(_ROUNDS):
         read = tuple(_pieces(normal_factors(own, about_z=about_z), symbols))
-        if not pieces:
-            moved += _rounded(arm, read, len(axes))
+        moved += _listed(_rounded(before, read, len(axes)), arm)
         pieces, found = _snapped(read, axes, max(limit * arm.size, arm.rounding), min(limit, SNAP))
         moved += _listed(found, arm)
         if len(pieces) == len(read):
             break
-        own = form.arm_of([_factor(piece, symbols) for piece in pieces])
+        own, before = form.arm_of([_factor(piece, symbols) for piece in pieces]), Simple(pieces, ()).forward
     return Simple(pieces, tuple(moved))
 
 
-def _rounded(arm: Arm, pieces: tuple[Piece, ...], count: int) -> list[Snapped]:
-    """What the form has taken as equal (`form.lines.SAME`), by the poses of the tip."""
+def _rounded(
+    before: Callable[[Sequence[float]], Array], pieces: tuple[Piece, ...], count: int
+) -> tuple[Snapped, Snapped]:
+    """What the form has taken as equal (`form.lines.SAME`), by the poses of the tip. before: those without it."""
     rng = np.random.default_rng(3)
     rows = [np.zeros(count), *rng.uniform(-2.0, 2.0, (5, count))]
-    differences = [Simple(pieces, ()).forward(row) - forward(arm, row) for row in rows]
+    differences = [Simple(pieces, ()).forward(row) - before(row) for row in rows]
     angle = max(float(np.linalg.norm(d[:3, :3])) for d in differences)
     length = max(float(np.linalg.norm(d[:3, 3])) for d in differences)
-    found = (Snapped(f"{_BELOW}: the tip moves", length, False), Snapped(f"{_BELOW}: the tip turns", angle, True))
-    return _listed(found, arm)
+    return Snapped(f"{_BELOW}: the tip moves", length, False), Snapped(f"{_BELOW}: the tip turns", angle, True)
 
 
 def _listed(moved: Sequence[Snapped], arm: Arm) -> list[Snapped]:
