@@ -25,8 +25,10 @@ SAME = 1e-9
 _NEARLY = 1e-12
 """A share that differs less than this from a simple fraction is that fraction."""
 _SIMPLE = 1000
-_DIGITS = 12
-"""The decimal digits of a sum in oblique frames, relative to its terms: further ones are rounding."""
+_DIGITS, _STATED = 14, 12
+"""The decimal digits of a sum in oblique frames, relative to its terms: further ones are rounding. And those that a
+person states, at most.
+"""
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def by_kind(shares: Array, lengths: Sequence[sp.Expr]) -> tuple[Array, list[sp.E
 
 def _is_computed(number: sp.Expr) -> bool:
     """Whether a sum has more decimals than anybody states: what its terms have left of each other is rounding."""
-    return bool(number.is_Rational and number.q > 10**_DIGITS)
+    return bool(number.is_Rational and number.q > 10**_STATED)
 
 
 def _without_rounding(value: float, size: float) -> sp.Expr:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import softkin
+from softkin import Status
 
 from derive.description.validate import validate
 from derive.frames import Ry, Rz, Ty, Tz
@@ -82,3 +83,18 @@ def test_an_answer_meets_its_pose() -> None:
         for near in (axes, np.zeros_like(axes)):
             places, turns = missed(robot, axes, near)
             assert places / (sum(SIZES.values()) * unit) <= WITHIN and turns <= WITHIN
+
+
+LEANING = "arm that rolls beside its elbow about an axis that leans"
+
+
+@pytest.mark.parametrize("a2", (0.0, 180.0, 180.0 + 1e-9, -1e-7))
+def test_a_fold_next_to_the_first_axis_is_no_end_of_reach(a2: float) -> None:
+    """Where the first axis meets the one that leans is no short decimal: rounded, it moves the end of reach."""
+    machine, a3 = made(LEANING), np.arange(-180.0, 180.0, 0.25)
+    axes = np.stack([np.full_like(a3, 180.0), np.full_like(a3, a2), a3], axis=1) + machine.closure.offsets
+    positions, rotations = machine.closure.poses(axes)
+    beside = np.hypot(*positions[:, :2].T) > 1e-3 * machine.reach
+    configurations = machine.robot.forward_batch(axes)[2]
+    statuses = machine.robot.inverse_batch(positions, rotations, configurations, axes)[1]
+    assert (statuses == Status.OK)[beside].all(), a3[beside & (statuses != Status.OK)].tolist()

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import takewhile
-from types import MappingProxyType
 
 import sympy as sp
 
@@ -19,16 +17,18 @@ from derive.description.mechanism import Branch, DescriptionError, Mechanism
 from derive.equations.axes import Forward, axis_lets, frozen_lets, held_lets, reference_lets
 from derive.equations.closures.fixed_names import fixed_lets
 from derive.geometry.frames import Chain
+from derive.ir.constants import NEARLY_FREE
 from derive.ir.passes import normalise, renamed
-from derive.ir.primitives import Root, Select, ToReal, larger
+from derive.ir.primitives import Root, Select, larger
 from derive.ir.program import Let, Output, Program, Require, Statement, rewritten
-from derive.ir.symbols import SIDE, TRIED, Flag, branch_sign, called, cosine, count, flag, real, sine
+from derive.ir.symbols import SIDE, TRIED, branch_sign, called, cosine, count, flag, real, sine
 from derive.kinematics.branches.assignment import Assignment, assign, refuse_unnamed, steps_and_rest, with_branch_signs
 from derive.kinematics.forward import pose_at_axes
 from derive.kinematics.inverse import Inverse, of_angle, solve_at, solve_pose, without_steps
 from derive.kinematics.search.elimination.equations import Equations, equations_of
 from derive.kinematics.search.elimination.order import elimination_of
 from derive.kinematics.search.guards import conditions_of, guards_of, least, room_of
+from derive.kinematics.search.loop.rounds import elsewhere
 from derive.kinematics.search.programs import Trial, trial_of, with_goal
 from derive.kinematics.search.slopes import slope_name, with_slopes
 from derive.kinematics.search.tool_turn import without_tool_turn
@@ -137,40 +137,16 @@ def from_joints(mechanism: Mechanism) -> Program:
 
 
 def trial_on_branch(both: Searched) -> Trial:
-    """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step, or the other way of an
-    angle that is free.
-    """
+    """One trial on the wanted branch; SIDE = -1 takes the other solution of its two-root step."""
     first, solved = _statements(both)
-    free = _free_angles(solved)
-    both_ways = tuple(one for s in solved for one in _both_ways(s, free))
-    return _trial(both, *_sides(both, first, both_ways, free), both_ways, free)
+    kept = tuple(rewritten(s, lambda e: e.xreplace(elsewhere(both.arm))) for s in solved)
+    return _trial(both, *_sides(both, first, kept), kept)
 
 
 def trial_of_all_signs(both: Searched) -> Trial:
     """A trial whose signs are all positive."""
     first, solved = _statements(both)
     return _trial(both, tuple(first), {a.sigma: sp.Integer(1) for a in both.trial_branches}, solved)
-
-
-def _free_angles(solved: Sequence[Statement]) -> dict[sp.Symbol, Flag]:
-    """The cosines and sines that are those of the reference where their angle is free, in front of every step that
-    folds; and the flag that it is so.
-    """
-    found: dict[sp.Symbol, Flag] = {}
-    for s in takewhile(lambda s: not isinstance(s, Require), solved):
-        if isinstance(s, Let) and isinstance(s.value, Select) and isinstance(s.value.args[2], sp.cos | sp.sin):
-            found[s.name] = flag(f"{s.name.name}_is_free")
-    return found
-
-
-def _both_ways(statement: Statement, free: Mapping[sp.Symbol, Flag]) -> Iterator[Statement]:
-    """A statement; that of a free angle stands half a turn on at the other side."""
-    if not isinstance(statement, Let) or statement.name not in free:
-        yield statement
-        return
-    holds, known, kept = statement.value.args
-    yield Let(free[statement.name], sp.Not(holds))
-    yield replace(statement, value=Select(holds, known, ToReal(SIDE) * kept))
 
 
 def _statements(both: Searched) -> tuple[list[Let], tuple[Statement, ...]]:
@@ -189,37 +165,34 @@ def _trial(
     first: Sequence[Let],
     signs: Mapping[sp.Symbol, sp.Expr],
     solved: Sequence[Statement],
-    free: Mapping[sp.Symbol, Flag] = MappingProxyType({}),
 ) -> Trial:
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])
-    values = [m.value for m in derivation.conditionings if m.angle not in derivation.wrist]
+    turning = [m for m in derivation.conditionings if m.angle not in derivation.wrist]
+    values = [m.value for m in turning]
+    keeps = Let(flag("keeps"), sp.Or(*(sp.Le(sp.Abs(m.value), NEARLY_FREE * m.scale) for m in turning)))
     rooms = [room_of(c) for c in conditions_of(solved)]
     values += [Root(larger(_FOLD - room, sp.Integer(0))) for room in rooms]
     lengths = [Let(real(f"turning_length_{k}"), value) for k, value in enumerate(values, 1)]
-    rooms += [Select(is_free, sp.Integer(0), sp.Integer(1)) for is_free in free.values()]
     room = Let(real("room"), least(rooms) if rooms else sp.Integer(1))
-    statements = with_goal(named_apart((*first, *solved, left, *lengths, room), "tried"))
+    statements = with_goal(named_apart((*first, *solved, left, *lengths, keeps, room), "tried"))
     signed = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
     left_over, *short = (real(f"{let.name.name}_tried") for let in (left, *lengths))
-    return trial_of(signed, left_over, short, real("room_tried"))
+    return trial_of(signed, left_over, short, real("room_tried"), flag("keeps_tried"))
 
 
 def _sides(
-    both: Searched, first: Sequence[Let], solved: Sequence[Statement], free: Mapping[sp.Symbol, Flag]
+    both: Searched, first: Sequence[Let], solved: Sequence[Statement]
 ) -> tuple[tuple[Let, ...], dict[sp.Symbol, sp.Expr]]:
     """The signs of the steps, by those that are wanted and the side of the trial, and the statements that they read.
 
-    The side is that of the step which, with the wanted signs, comes first to the end of its reach; where an angle is
-    free, of this angle.
+    The side is that of the step which, with the wanted signs, comes first to the end of its reach.
     """
     guards = guards_of(both.trial.derivation) or ()
     signs = {a.sigma: wanted(a.branch) for a in both.trial_branches}
     steps = {a.determinant.step: a for a in both.trial_branches}
-    none_is_free = sp.And(*(sp.Not(_tried(is_free)) for is_free in free.values()))
     if len(guards) < 2:
-        side = Select(none_is_free, SIDE, sp.Integer(1)) if free else SIDE
-        return tuple(first), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * side for g in guards}
+        return tuple(first), signs | {steps[g.step].sigma: wanted(steps[g.step].branch) * SIDE for g in guards}
     rooms = [real(f"room_of_{g.step.name}") for g in guards]
     statements = list(_with_rooms(first, [rewritten(s, lambda e: e.xreplace(signs)) for s in solved], rooms))
     bound = {s.name for s in statements if isinstance(s, Let)}
@@ -228,9 +201,7 @@ def _sides(
         is_first, others = flag(f"first_is_{guard.step.name}"), [r for r in rooms if r != room]
         statements.append(Let(is_first, sp.And(*[sp.Le(room * rates[r], r * rates[room]) for r in others])))
         folding = steps[guard.step]
-        signs[folding.sigma] = wanted(folding.branch) * Select(
-            sp.And(_tried(is_first), none_is_free), SIDE, sp.Integer(1)
-        )
+        signs[folding.sigma] = wanted(folding.branch) * Select(_tried(is_first), SIDE, sp.Integer(1))
     return tuple(s for s in statements if isinstance(s, Let)), signs
 
 

@@ -29,6 +29,7 @@ from derive.kinematics.forward import derivation_at_axes
 from derive.kinematics.inverse import Inverse
 from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.search.derivations import SEARCHED, Searched, named_apart, searched_flag, trial_on_branch, wanted
+from derive.kinematics.search.loop.rounds import ROUND
 from derive.kinematics.search.programs import GOAL
 from derive.work import stage
 
@@ -176,7 +177,7 @@ def _measured_slope(both: Searched, samples: dict[str, NDArray[np.float64]]) -> 
     held = mechanism.held_joints
     for j in mechanism.joints:
         known[reference_value(j).name] = values[j.symbol.name] if j in held else np.zeros(_SAMPLES)
-    known |= {SIDE.name: np.ones(_SAMPLES)}
+    known |= {SIDE.name: np.ones(_SAMPLES), ROUND.name: np.zeros(_SAMPLES)}
     ends = []
     for shift in (1e-6, -1e-6):
         tried = np.radians(samples[joint.axis.name] - samples[joint.offset.name]) + shift

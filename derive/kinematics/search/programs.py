@@ -60,6 +60,8 @@ class Trial:
     """Each turns an angle, which turns fast where it is short."""
     room: sp.Symbol
     """How far, without a unit, the nearest step is from where its two roots join."""
+    keeps: sp.Symbol
+    """Whether an angle is nearly free, so that another value of it may leave no residual."""
 
 
 def joints_program(mechanism: Mechanism, trial: Trial) -> Program:
@@ -204,9 +206,11 @@ def _errors(mechanism: Mechanism) -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
-def trial_of(statements: Sequence[Statement], value: sp.Expr, lengths: Sequence[sp.Symbol], room: sp.Symbol) -> Trial:
+def trial_of(
+    statements: Sequence[Statement], value: sp.Expr, lengths: Sequence[sp.Symbol], room: sp.Symbol, keeps: sp.Symbol
+) -> Trial:
     """A trial from solved statements."""
-    return Trial(tuple(s for s in statements if isinstance(s, Let)), value, tuple(lengths), room)
+    return Trial(tuple(s for s in statements if isinstance(s, Let)), value, tuple(lengths), room, keeps)
 
 
 def roots_named(statements: Sequence[Let]) -> list[Let]:

@@ -1110,8 +1110,9 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
-      reference_a1 = given[12], reference_a2 = given[13], tried = given[15];
-  const int side = (int)given[14], wanted_elbow = (int)given[16], wanted_shoulder = (int)given[17];
+      reference_a1 = given[12], reference_a2 = given[13], tried = given[16];
+  const int round = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
+      wanted_shoulder = (int)given[18];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
   /* wrist centre: the last joints do not move this point */
@@ -1121,13 +1122,14 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       - k->d6*goal_r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
+  const double product_in_cos_q1_tried = (round > 0 ? 1e-5 : 2e-12)*k->machine_scale;
   const double slope_wrist_x_tried = k->j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried);
   const double slope_wrist_y_tried = k->j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried);
   const double slope_distance_q1_tried = distance_q1_tried > 0.0
       ? (slope_wrist_x_tried*wrist_x_tried + slope_wrist_y_tried*wrist_y_tried)
       /(distance_q1_tried > 0.0 ? distance_q1_tried : 1.0) : 0.0;
   double cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried;
-  if (distance_q1_tried > k->machine_scale_times_free_angle) {
+  if (distance_q1_tried > product_in_cos_q1_tried) {
     const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
     /* rotation by q1 that points the arm at the point */
     const double along_q1_tried = sign_shoulder_tried*wrist_x_tried;
@@ -1143,9 +1145,10 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried*sin_q1_tried)
         *one_by_distance_q1_tried;
   } else {
-    const double real_of_side = side;
-    cos_q1_tried = cos(reference_a1)*real_of_side; /* at a singularity: the angle of the reference */
-    sin_q1_tried = real_of_side*sin(reference_a1);
+    const double real_of_round = round;
+    const double sum_in_cos_q1_tried = 2.356194490192345*real_of_round + reference_a1;
+    cos_q1_tried = cos(sum_in_cos_q1_tried); /* at a singularity: the angle of the reference */
+    sin_q1_tried = sin(sum_in_cos_q1_tried);
     slope_cos_q1_tried = 0.0;
     slope_sin_q1_tried = 0.0;
   }
@@ -1191,9 +1194,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   }
   const double one_by_sum_q3_tried = 1.0/divisor_of_cos_q3_tried;
   const double cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)*one_by_sum_q3_tried;
-  const bool cos_q1_is_free_tried = distance_q1_tried <= k->machine_scale_times_free_angle;
-  /* elbow: +1 up, -1 down */
-  const double sign_elbow_tried = ((!cos_q1_is_free_tried ? side : 1)*wanted_elbow);
+  const double sign_elbow_tried = (side*wanted_elbow); /* elbow: +1 up, -1 down */
   /* sine squared, times the squared scale */
   const double sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried;
   const double root_of_sin_swing_q3_tried = softkin_root(sine_square_q3_tried);
@@ -1215,7 +1216,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_sin_q3_tried = k->a3_by_length_26*slope_sin_swing_q3_tried
       - k->d4_by_length_26*slope_cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle) {
+  if (reach_tried > product_in_cos_q1_tried) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
     const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
     /* rotation by q2 that takes the arm to its target point */
@@ -1251,8 +1252,10 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)
         *one_by_root_of_length_q2_tried;
   } else {
-    cos_q2_tried = cos(reference_a2); /* at a singularity: the angle of the reference */
-    sin_q2_tried = sin(reference_a2);
+    const double real_of_round = round;
+    const double sum_in_cos_q2_tried = 0.7853981633974483*real_of_round + reference_a2;
+    cos_q2_tried = cos(sum_in_cos_q2_tried); /* at a singularity: the angle of the reference */
+    sin_q2_tried = sin(sum_in_cos_q2_tried);
     slope_cos_q2_tried = 0.0;
     slope_sin_q2_tried = 0.0;
   }
@@ -1276,21 +1279,9 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   const double slope_r12_from_q123_before_q6_tried = (r11_from_q123_tried + slope_r12_from_q123_tried)
       *cos_q6_tried + (slope_r11_from_q123_tried - r12_from_q123_tried)*sin_q6_tried;
   const double cos_swing_q3_tried_squared = cos_swing_q3_tried*cos_swing_q3_tried;
-  const double sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001;
-  double room_tried;
-  if (cos_q1_is_free_tried) {
-    if (-sum_in_room_tried <= 0.0) {
-      room_tried = -sum_in_room_tried <= 0.0 ? -sum_in_room_tried : 0.0;
-    } else {
-      room_tried = 0.0;
-    }
-  } else {
-    if (-sum_in_room_tried <= 1.0) {
-      room_tried = -sum_in_room_tried <= 1.0 ? -sum_in_room_tried : 1.0;
-    } else {
-      room_tried = 1.0;
-    }
-  }
+  const double room_tried = 1.000000000001 - cos_swing_q3_tried_squared;
+  const bool keeps_tried = (fabs(distance_q1_tried) <= k->product_in_keeps_tried)
+      || (fabs(reach_tried) <= k->product_in_keeps_tried);
   const double turning_length_3_tried = softkin_root(0.2499999999989999 + cos_swing_q3_tried_squared);
   const double slope_turning_length_3_tried = turning_length_3_tried > 0.0
       ? slope_cos_swing_q3_tried*cos_swing_q3_tried
@@ -1298,12 +1289,13 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
   found[0] = -r12_from_q123_before_q6_tried;
   found[1] = -slope_r12_from_q123_before_q6_tried;
   found[2] = room_tried;
-  found[3] = distance_q1_tried;
-  found[4] = distance_q1_tried*slope_distance_q1_tried;
-  found[5] = reach_tried;
-  found[6] = reach_tried*slope_reach_tried;
-  found[7] = turning_length_3_tried;
-  found[8] = slope_turning_length_3_tried*turning_length_3_tried;
+  found[3] = keeps_tried;
+  found[4] = distance_q1_tried;
+  found[5] = distance_q1_tried*slope_distance_q1_tried;
+  found[6] = reach_tried;
+  found[7] = reach_tried*slope_reach_tried;
+  found[8] = turning_length_3_tried;
+  found[9] = slope_turning_length_3_tried*turning_length_3_tried;
   return SOFTKIN_OK;
 }
 
@@ -1315,8 +1307,9 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double goal_r11 = given[0], goal_r12 = given[1], goal_r13 = given[2], goal_r21 = given[3],
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
-      reference_a1 = given[12], reference_a2 = given[13], tried = given[15];
-  const int side = (int)given[14], wanted_elbow = (int)given[16], wanted_shoulder = (int)given[17];
+      reference_a1 = given[12], reference_a2 = given[13], tried = given[16];
+  const int round = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
+      wanted_shoulder = (int)given[18];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
   /* wrist centre: the last joints do not move this point */
@@ -1326,8 +1319,9 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
       - k->d6*goal_r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
+  const double product_in_sin_q1_tried = (round > 0 ? 1e-5 : 2e-12)*k->machine_scale;
   double cos_q1_tried, sin_q1_tried;
-  if (distance_q1_tried > k->machine_scale_times_free_angle) {
+  if (distance_q1_tried > product_in_sin_q1_tried) {
     const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
     /* rotation by q1 that points the arm at the point */
     const double along_q1_tried = sign_shoulder_tried*wrist_x_tried;
@@ -1335,9 +1329,10 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried/distance_q1_tried;
   } else {
-    const double real_of_side = side;
-    cos_q1_tried = cos(reference_a1)*real_of_side; /* at a singularity: the angle of the reference */
-    sin_q1_tried = real_of_side*sin(reference_a1);
+    const double real_of_round = round;
+    const double sum_in_sin_q1_tried = 2.356194490192345*real_of_round + reference_a1;
+    cos_q1_tried = cos(sum_in_sin_q1_tried); /* at a singularity: the angle of the reference */
+    sin_q1_tried = sin(sum_in_sin_q1_tried);
   }
   /* coordinate of the point that the remaining links must reach */
   const double wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - k->a1;
@@ -1358,9 +1353,7 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried;
   const double divisor_of_cos_q3_tried = sum_q3_tried > 0.0 ? sum_q3_tried : 1.0;
   const double cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried;
-  const bool cos_q1_is_free_tried = distance_q1_tried <= k->machine_scale_times_free_angle;
-  /* elbow: +1 up, -1 down */
-  const double sign_elbow_tried = ((!cos_q1_is_free_tried ? side : 1)*wanted_elbow);
+  const double sign_elbow_tried = (side*wanted_elbow); /* elbow: +1 up, -1 down */
   /* sine squared, times the squared scale */
   const double sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried;
   const double sin_swing_q3_tried = 2.0*softkin_root(sine_square_q3_tried)*sign_elbow_tried
@@ -1369,7 +1362,7 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
   const double cos_q3_tried = k->a3_by_length_26*cos_swing_q3_tried + k->d4_by_length_26*sin_swing_q3_tried;
   const double sin_q3_tried = k->a3_by_length_26*sin_swing_q3_tried - k->d4_by_length_26*cos_swing_q3_tried;
   double cos_q2_tried, sin_q2_tried;
-  if (reach_tried > k->machine_scale_times_free_angle) {
+  if (reach_tried > product_in_sin_q1_tried) {
     const double arm_along_q2_tried = k->a3*sin_q3_tried + k->d4*cos_q3_tried;
     const double arm_across_q2_tried = k->a2 + k->a3*cos_q3_tried - k->d4*sin_q3_tried;
     /* rotation by q2 that takes the arm to its target point */
@@ -1382,8 +1375,10 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
     cos_q2_tried = along_q2_tried/length_q2_tried; /* at a singularity: the angle of the reference */
     sin_q2_tried = across_q2_tried/length_q2_tried;
   } else {
-    cos_q2_tried = cos(reference_a2); /* at a singularity: the angle of the reference */
-    sin_q2_tried = sin(reference_a2);
+    const double real_of_round = round;
+    const double sum_in_sin_q2_tried = 0.7853981633974483*real_of_round + reference_a2;
+    cos_q2_tried = cos(sum_in_sin_q2_tried); /* at a singularity: the angle of the reference */
+    sin_q2_tried = sin(sum_in_sin_q2_tried);
   }
   const double r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried;
   const double r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried;
@@ -1478,11 +1473,13 @@ static softkin_status find_root(const void *machine, const double *given, double
   double q6 = 0.0;
   double met_from_q6 = 0.0;
   double kept_q6 = 0.0;
+  int round = 0;
+  bool kept_an_angle = false;
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, length_3, growth_3, size, best_now, way_now, best_now_minus_way_now, newton_place,
       settled, least_now, begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, error, moved_q1,
-      moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, end_of_way, moved, q6_minus_start, way_ahead,
-      nearest_now, place_next, width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2,
+      moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, end_of_way, q6_minus_start, way_ahead, nearest_now,
+      moved, place_next, width_next, shortest_now, growth, gap, way_of_trial, bend_now, bend_now_2,
       aside_now, error_before_next, spread, spread_times_1_by_4, best_now_plus_spread_times_1_by_4,
       at_minus_growth_by_bend_now, value_in_shortening_place, shortening_place, sum_in_place_of_start,
       value_in_place_of_start, place_of_start, at_next, best_next, least_next, most_room_next, way_next,
@@ -1491,10 +1488,11 @@ static softkin_status find_root(const void *machine, const double *given, double
       met_from_q2_next, kept_now_q2, q3_next, met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next,
       kept_now_q4, q5_next, met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
-      steps_left_next, passes_left_next, trials_next;
-  bool is_rounding, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits, way_ends,
-      turns_back, is_over, is_shortest, mirrors, part_ends, start_ends, is_better, is_nearest, side_ends,
-      part_is_done, begins, is_first, seeks_length, is_newton_next, was_mirrored_next;
+      steps_left_next, passes_left_next, trials_next, round_next;
+  bool is_rounding, keeps_an_angle, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits,
+      way_ends, turns_back, kept_an_angle_now, is_better, goes_round, is_over, is_shortest, mirrors,
+      part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first, seeks_length,
+      begins_anew, is_newton_next, was_mirrored_next;
   for (int pass = 0; pass < 4001; pass += 1) {
     place_plus_width = place_ + width;
     double results[2] = {0.0};
@@ -1510,10 +1508,10 @@ static softkin_status find_root(const void *machine, const double *given, double
     is_rounding = results[0] != 0.0;
     safe_step = results[1];
     real_of_direction = direction;
-    double results_of_2[9] = {0.0};
+    double results_of_2[10] = {0.0};
     if ((stage == 1) || (stage == 2)) {
       const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, round, side,
           start_ + at*real_of_direction, wanted_elbow, wanted_shoulder};
       const softkin_status status_of_2 = find_try_joint(k, arguments_of_2, results_of_2, why);
       if (status_of_2 != SOFTKIN_OK) {
@@ -1523,12 +1521,13 @@ static softkin_status find_root(const void *machine, const double *given, double
     remainder = results_of_2[0];
     rate = results_of_2[1];
     room_of_trial = results_of_2[2];
-    length_1 = results_of_2[3];
-    growth_1 = results_of_2[4];
-    length_2 = results_of_2[5];
-    growth_2 = results_of_2[6];
-    length_3 = results_of_2[7];
-    growth_3 = results_of_2[8];
+    keeps_an_angle = results_of_2[3] != 0.0;
+    length_1 = results_of_2[4];
+    growth_1 = results_of_2[5];
+    length_2 = results_of_2[6];
+    growth_2 = results_of_2[7];
+    length_3 = results_of_2[8];
+    growth_3 = results_of_2[9];
     size = stage == 1 ? (number_of_start > 15 ? length_3 : (number_of_start > 12 ? length_2 : length_1))
         : fabs(remainder);
     is_less = (size < least) && ((stage == 1) || (most_room <= 0.0) || (number_of_start > 9)
@@ -1545,11 +1544,12 @@ static softkin_status find_root(const void *machine, const double *given, double
         || (fabs(settled - settled_3) <= 1e-12) || (fabs(settled - settled_4) <= 1e-12)
         || (fabs(settled - settled_5) <= 1e-12) || (fabs(settled - settled_6) <= 1e-12);
     is_near = is_settled && (((!is_known) && (width > 1e-6))
-        || ((least_now <= 0.001) && (width <= 1e-6) && ((room_of_trial <= 1e-6) || (side > 0))));
+        || ((width <= 1e-6) && ((least_now <= 0.001) || (round > 0))
+        && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, side,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, round, side,
           start_ + real_of_direction*settled, wanted_elbow, wanted_shoulder};
       const softkin_status status_of_3 = find_joints_at(k, arguments_of_3, results_of_3, why);
       if (status_of_3 != SOFTKIN_OK) {
@@ -1594,7 +1594,18 @@ static softkin_status find_root(const void *machine, const double *given, double
     end_of_way = nearest < value_in_end_of_way ? nearest + 1e-7*(onward ? -2.0 : 2.0) : value_in_end_of_way;
     way_ends = (stage == 0) && (place_ >= end_of_way) && (width <= 0.0);
     turns_back = way_ends && (!onward) && (direction > 0);
-    is_over = (passes_left <= 0) || (way_ends && (!turns_back));
+    kept_an_angle_now = kept_an_angle || (keeps_an_angle && ((stage == 1) || (stage == 2)));
+    q6_minus_start = q6 - start_;
+    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
+        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start),
+        cos(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start))
+        : fabs(softkin_angle_of(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7)));
+    is_better = fits && meets_pose && (way_ahead < nearest)
+        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
+    nearest_now = is_better ? way_ahead : nearest;
+    goes_round = kept_an_angle_now && way_ends && (!onward) && (!turns_back) && (nearest_now >= 9.0)
+        && (round < 7);
+    is_over = (passes_left <= 0) || (way_ends && (!goes_round) && (!turns_back));
     is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
         + fabs(met_from_q5 - q5) + fabs(met_from_q6 - q6);
@@ -1606,14 +1617,6 @@ static softkin_status find_root(const void *machine, const double *given, double
         ? number_of_start_plus_one
         : (number_of_start <= 9 ? (width > 1e-6 ? 10 : 0)
         : (number_of_start < 18 ? number_of_start_plus_one : 0));
-    q6_minus_start = q6 - start_;
-    way_ahead = onward ? 1e-7 + 180.0*SOFTKIN_DEGREE
-        + softkin_angle_of(-sin(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start),
-        cos(1e-7 + 180.0*SOFTKIN_DEGREE - q6_minus_start))
-        : fabs(softkin_angle_of(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7)));
-    is_better = fits && meets_pose && (way_ahead < nearest)
-        && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
-    nearest_now = is_better ? way_ahead : nearest;
     is_nearest = nearest_now <= 2e-7 + place_;
     side_ends = start_ends && (!is_nearest) && (side > 0) && (is_nearest || (next_number == 0));
     part_is_done = start_ends && (!side_ends) && (is_nearest || (next_number == 0));
@@ -1624,11 +1627,12 @@ static softkin_status find_root(const void *machine, const double *given, double
     next_stage = is_near || mirrors || ((!steps_end) && (stage == 3)) ? 3
         : (seeks_length || ((!is_shortest) && (stage == 1)) ? 1
         : (is_shortest || (begins && (!seeks_length)) || ((!is_settled) && (stage == 2)) ? 2 : 0));
-    direction_next = turns_back ? -1 : direction;
-    place_next = turns_back ? 0.0
+    begins_anew = goes_round || turns_back;
+    direction_next = turns_back ? -1 : (begins_anew ? 1 : direction);
+    place_next = begins_anew ? 0.0
         : (part_is_done ? place_plus_width
         : ((!is_rounding) && (stage == 0) && (width <= 0.0) ? place_ + safe_step : place_));
-    width_next = turns_back ? 0.0
+    width_next = begins_anew ? 0.0
         : (part_is_done ? 0.0 : ((!part_ends) && (stage == 0)
         ? (width > 0.0 ? (width <= 1e-6 ? 8.0 : 2.0)*width : (is_rounding ? 1e-13 : 0.0)) : width));
     side_next = part_ends ? 1 : (side_ends ? -1 : side);
@@ -1703,6 +1707,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     q6_next = is_near ? begun_q6 : (mirrors ? 2.0*met_from_q6 - q6 : moved_q6);
     met_from_q6_next = is_near ? begun_q6 : met_from_q6;
     kept_now_q6 = is_better ? q6 : kept_q6;
+    round_next = round + (goes_round ? 1 : 0);
     if (is_over || (!looked_for)) {
       break;
     }
@@ -1753,6 +1758,8 @@ static softkin_status find_root(const void *machine, const double *given, double
     q6 = q6_next;
     met_from_q6 = met_from_q6_next;
     kept_q6 = kept_now_q6;
+    round = round_next;
+    kept_an_angle = kept_an_angle_now;
   }
   found[0] = nearest_now < 9.0;
   found[1] = (nearest_now < 9.0 ? nearest_now : 0.0);
@@ -2857,6 +2864,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double a2_plus_length_26_squared = a2_plus_length_26*a2_plus_length_26;
   const double a2_minus_length_26 = p->a2 - length_26;
   const double a2_minus_length_26_squared = a2_minus_length_26*a2_minus_length_26;
+  const double product_in_keeps_tried = 1e-5*machine_scale;
   const double machine_scale_times_free_angle = 2e-12*machine_scale;
   const double one_by_machine_scale = 1.0/machine_scale;
   const double quotient_in_fits = 0.5*machine_scale*machine_scale/(p->a2*length_26);
@@ -2902,6 +2910,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.offset_a4 = p->offset_a4;
   made.offset_a5 = p->offset_a5;
   made.offset_a6 = p->offset_a6;
+  made.machine_scale = machine_scale;
   made.length_26 = length_26;
   made.searched = searched;
   made.a1_squared = a1_squared;
@@ -2909,6 +2918,7 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.a2_plus_length_26_squared = a2_plus_length_26_squared;
   made.a2_minus_length_26 = a2_minus_length_26;
   made.a2_minus_length_26_squared = a2_minus_length_26_squared;
+  made.product_in_keeps_tried = product_in_keeps_tried;
   made.machine_scale_times_free_angle = machine_scale_times_free_angle;
   made.one_by_machine_scale = one_by_machine_scale;
   made.quotient_in_fits = quotient_in_fits;

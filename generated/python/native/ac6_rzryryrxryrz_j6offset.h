@@ -117,9 +117,10 @@ typedef struct {
   double lowest_a1, highest_a1, mid_a1, lowest_a2, highest_a2, mid_a2, lowest_a3, highest_a3, mid_a3,
       lowest_a4, highest_a4, mid_a4, lowest_a5, highest_a5, mid_a5, lowest_a6, highest_a6, mid_a6, d1, a1,
       a2, a3, d4, j6_offset_x, d6, offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,
-      length_26, a1_squared, a2_plus_length_26, a2_plus_length_26_squared, a2_minus_length_26,
-      a2_minus_length_26_squared, machine_scale_times_free_angle, one_by_machine_scale, quotient_in_fits,
-      twice_a1, one_by_length_26_or_1, d4_by_length_26, a3_by_length_26, one_by_length_26;
+      machine_scale, length_26, a1_squared, a2_plus_length_26, a2_plus_length_26_squared, a2_minus_length_26,
+      a2_minus_length_26_squared, product_in_keeps_tried, machine_scale_times_free_angle,
+      one_by_machine_scale, quotient_in_fits, twice_a1, one_by_length_26_or_1, d4_by_length_26,
+      a3_by_length_26, one_by_length_26;
   bool single_a1, single_a2, single_a3, single_a4, single_a5, single_a6, searched;
 } ac6_rzryryrxryrz_j6offset_machine;
 

@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1827246 additions, 2403638 multiplications, 96574 divisions, 48144 square roots, 96860 sines
-    inverse, all 16 branches: 29236209 additions, 38458304 multiplications, 1545184 divisions, 770304 square
+    inverse: 1831312 additions, 2403638 multiplications, 96574 divisions, 48144 square roots, 96860 sines
+    inverse, all 16 branches: 29301265 additions, 38458304 multiplications, 1545184 divisions, 770304 square
     roots, 1549760 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 27 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -101,6 +101,7 @@ class Constants:
         a2_plus_length_26_squared = a2_plus_length_26 * a2_plus_length_26
         a2_minus_length_26 = a2 - length_26
         a2_minus_length_26_squared = a2_minus_length_26 * a2_minus_length_26
+        product_in_keeps_tried = 1e-5 * machine_scale
         machine_scale_times_free_angle = 2e-12 * machine_scale
         one_by_machine_scale = 1.0 / machine_scale
         quotient_in_fits = 0.5 * machine_scale * machine_scale / (a2 * length_26)
@@ -111,10 +112,11 @@ class Constants:
         one_by_length_26 = 1.0 / length_26
         self.d1, self.a1, self.a2, self.a3, self.d4, self.j6_offset_x, self.d6 = d1, a1, a2, a3, d4, j6_offset_x, d6
         self.offset_a1, self.offset_a2, self.offset_a3, self.offset_a4 = offset_a1, offset_a2, offset_a3, offset_a4
-        self.offset_a5, self.offset_a6, self.length_26, self.searched = offset_a5, offset_a6, length_26, searched
-        self.a1_squared, self.a2_plus_length_26 = a1_squared, a2_plus_length_26
-        self.a2_plus_length_26_squared, self.a2_minus_length_26 = a2_plus_length_26_squared, a2_minus_length_26
-        self.a2_minus_length_26_squared = a2_minus_length_26_squared
+        self.offset_a5, self.offset_a6, self.machine_scale = offset_a5, offset_a6, machine_scale
+        self.length_26, self.searched, self.a1_squared = length_26, searched, a1_squared
+        self.a2_plus_length_26, self.a2_plus_length_26_squared = a2_plus_length_26, a2_plus_length_26_squared
+        self.a2_minus_length_26, self.a2_minus_length_26_squared = a2_minus_length_26, a2_minus_length_26_squared
+        self.product_in_keeps_tried = product_in_keeps_tried
         self.machine_scale_times_free_angle = machine_scale_times_free_angle
         self.one_by_machine_scale, self.quotient_in_fits = one_by_machine_scale, quotient_in_fits
         self.twice_a1, self.one_by_length_26_or_1 = twice_a1, one_by_length_26_or_1
@@ -131,7 +133,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 34afbd08231b490e"
+    KEY = "ac6_rzryryrxryrz_j6offset 8568222ea6794af1"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -764,23 +766,24 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wanted_shoulder,
             wanted_wrist,
         ) = given
-        begun_q1 = arctan2(sin(reference_a1) + 0.0, cos(reference_a1) + 0.0)
-        begun_q2 = arctan2(sin(reference_a2) + 0.0, cos(reference_a2) + 0.0)
-        begun_q3 = arctan2(sin(reference_a3) + 0.0, cos(reference_a3) + 0.0)
-        begun_q4 = arctan2(sin(reference_a4) + 0.0, cos(reference_a4) + 0.0)
-        begun_q5 = arctan2(sin(reference_a5) + 0.0, cos(reference_a5) + 0.0)
-        begun_q6 = arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0)
+        shared_value = arctan2(sin(reference_a1) + 0.0, cos(reference_a1) + 0.0)
+        shared_value_2 = arctan2(sin(reference_a2) + 0.0, cos(reference_a2) + 0.0)
+        shared_value_3 = arctan2(sin(reference_a3) + 0.0, cos(reference_a3) + 0.0)
+        shared_value_4 = arctan2(sin(reference_a4) + 0.0, cos(reference_a4) + 0.0)
+        shared_value_5 = arctan2(sin(reference_a5) + 0.0, cos(reference_a5) + 0.0)
+        shared_value_6 = arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0)
         # one step towards the pose
-        followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = (
-            begun_q1,
-            begun_q2,
-            begun_q3,
-            begun_q4,
-            begun_q5,
-            begun_q6,
-            9.0,
-            False,
-        )
+        (
+            followed_q1,
+            followed_q2,
+            followed_q3,
+            followed_q4,
+            followed_q5,
+            followed_q6,
+            error_before,
+            steps_left,
+            is_newton,
+        ) = shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
         for _ in range(65):
             found = self._step_on_closure(
                 (
@@ -808,18 +811,19 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if isinstance(found, Status):
                 return found
             error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
-            way_from_reference = (
-                abs(begun_q1 - moved_q1)
-                + abs(begun_q2 - moved_q2)
-                + abs(begun_q3 - moved_q3)
-                + abs(begun_q4 - moved_q4)
-                + abs(begun_q5 - moved_q5)
-                + abs(begun_q6 - moved_q6)
-            )
             newton_next = (not is_newton) and (error > 0.9 * error_before)
+            shared_sum = (
+                abs(moved_q1 - shared_value)
+                + abs(moved_q2 - shared_value_2)
+                + abs(moved_q3 - shared_value_3)
+                + abs(moved_q4 - shared_value_4)
+                + abs(moved_q5 - shared_value_5)
+                + abs(moved_q6 - shared_value_6)
+            )
             if (
                 (error <= 1e-14)
-                or (way_from_reference > 0.1)
+                or (shared_sum > 0.1)
+                or (steps_left <= 0)
                 or (error > 0.999 * error_before)
                 or ((error <= 1e-11) and (2.0 * error > error_before))
             ):
@@ -831,8 +835,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             followed_q5 = moved_q5
             followed_q6 = moved_q6
             error_before = error
+            steps_left = steps_left - 1
             is_newton = newton_next
-        if (error <= 1e-11) and (way_from_reference <= 0.1):
+        if (error <= 1e-11) and (shared_sum <= 0.1):
             found = self._is_on_branch(
                 (
                     followed_q1,
@@ -1512,6 +1517,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_z,
             reference_a1,
             reference_a2,
+            round,
             side,
             tried,
             wanted_elbow,
@@ -1520,7 +1526,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1, a2, a2_minus_length_26, a2_plus_length_26, a3 = k.a1, k.a2, k.a2_minus_length_26, k.a2_plus_length_26, k.a3
         a3_by_length_26, d1, d4, d4_by_length_26, d6 = k.a3_by_length_26, k.d1, k.d4, k.d4_by_length_26, k.d6
-        j6_offset_x, machine_scale_times_free_angle = k.j6_offset_x, k.machine_scale_times_free_angle
+        j6_offset_x, machine_scale, product_in_keeps_tried = k.j6_offset_x, k.machine_scale, k.product_in_keeps_tried
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -1528,6 +1534,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        product_in_cos_q1_tried = (1e-5 if round > 0 else 2e-12) * machine_scale
         slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
         slope_distance_q1_tried = (
@@ -1537,7 +1544,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else 0.0
         )
         # at a singularity: the angle of the reference
-        if distance_q1_tried > machine_scale_times_free_angle:
+        if distance_q1_tried > product_in_cos_q1_tried:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             one_by_distance_q1_tried = 1.0 / distance_q1_tried
             cos_q1_tried = along_q1_tried * one_by_distance_q1_tried
@@ -1552,8 +1559,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q1_tried - slope_distance_q1_tried * sin_q1_tried
             ) * one_by_distance_q1_tried
         else:
-            cos_q1_tried = side * cos(reference_a1)
-            sin_q1_tried = side * sin(reference_a1)
+            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * round
+            cos_q1_tried = cos(sum_in_cos_q1_tried)
+            sin_q1_tried = sin(sum_in_cos_q1_tried)
             slope_cos_q1_tried = 0.0
             slope_sin_q1_tried = 0.0
         # coordinate of the point that the remaining links must reach
@@ -1602,8 +1610,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_divisor_of_cos_q3_tried = 0.0
         one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        cos_q1_is_free_tried = distance_q1_tried <= machine_scale_times_free_angle
-        sign_elbow_tried = (side if not cos_q1_is_free_tried else 1) * wanted_elbow  # elbow: +1 up, -1 down
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0
@@ -1631,7 +1638,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         slope_cos_q3_tried = a3_by_length_26 * slope_cos_swing_q3_tried + d4_by_length_26 * slope_sin_swing_q3_tried
         slope_sin_q3_tried = a3_by_length_26 * slope_sin_swing_q3_tried - d4_by_length_26 * slope_cos_swing_q3_tried
         # at a singularity: the angle of the reference
-        if reach_tried > machine_scale_times_free_angle:
+        if reach_tried > product_in_cos_q1_tried:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
             # rotation by q2 that takes the arm to its target point
@@ -1673,8 +1680,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
             ) * one_by_root_of_length_q2_tried
         else:
-            cos_q2_tried = cos(reference_a2)
-            sin_q2_tried = sin(reference_a2)
+            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * round
+            cos_q2_tried = cos(sum_in_cos_q2_tried)
+            sin_q2_tried = sin(sum_in_cos_q2_tried)
             slope_cos_q2_tried = 0.0
             slope_sin_q2_tried = 0.0
         sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
@@ -1711,17 +1719,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
         cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
-        sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001
-        if cos_q1_is_free_tried:
-            if -sum_in_room_tried <= 0.0:
-                room_tried = -sum_in_room_tried if -sum_in_room_tried <= 0.0 else 0.0
-            else:
-                room_tried = 0.0
-        else:
-            if -sum_in_room_tried <= 1.0:
-                room_tried = -sum_in_room_tried if -sum_in_room_tried <= 1.0 else 1.0
-            else:
-                room_tried = 1.0
+        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        keeps_tried = (abs(distance_q1_tried) <= product_in_keeps_tried) or (abs(reach_tried) <= product_in_keeps_tried)
         turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
         slope_turning_length_3_tried = (
             slope_cos_swing_q3_tried
@@ -1734,6 +1733,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
             room_tried,
+            keeps_tried,
             distance_q1_tried,
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
@@ -1759,6 +1759,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_z,
             reference_a1,
             reference_a2,
+            round,
             side,
             tried,
             wanted_elbow,
@@ -1767,7 +1768,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         k = self._constants
         a1, a2, a2_minus_length_26, a2_plus_length_26, a3 = k.a1, k.a2, k.a2_minus_length_26, k.a2_plus_length_26, k.a3
         a3_by_length_26, d1, d4, d4_by_length_26, d6 = k.a3_by_length_26, k.d1, k.d4, k.d4_by_length_26, k.d6
-        j6_offset_x, machine_scale_times_free_angle = k.j6_offset_x, k.machine_scale_times_free_angle
+        j6_offset_x, machine_scale = k.j6_offset_x, k.machine_scale
         cos_q6_tried = cos(tried)
         sin_q6_tried = sin(tried)
         # wrist centre: the last joints do not move this point
@@ -1775,15 +1776,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        product_in_sin_q1_tried = (1e-5 if round > 0 else 2e-12) * machine_scale
         # at a singularity: the angle of the reference
-        if distance_q1_tried > machine_scale_times_free_angle:
+        if distance_q1_tried > product_in_sin_q1_tried:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
             cos_q1_tried = along_q1_tried / distance_q1_tried
             across_q1_tried = wanted_shoulder * wrist_y_tried
             sin_q1_tried = across_q1_tried / distance_q1_tried
         else:
-            cos_q1_tried = side * cos(reference_a1)
-            sin_q1_tried = side * sin(reference_a1)
+            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * round
+            cos_q1_tried = cos(sum_in_sin_q1_tried)
+            sin_q1_tried = sin(sum_in_sin_q1_tried)
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - a1
         wrist_z_tried = goal_z + (goal_r32 * sin_q6_tried - goal_r31 * cos_q6_tried) * j6_offset_x - d6 * goal_r33
@@ -1800,8 +1803,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = sum_q3_tried if sum_q3_tried > 0.0 else 1.0
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
-        cos_q1_is_free_tried = distance_q1_tried <= machine_scale_times_free_angle
-        sign_elbow_tried = (side if not cos_q1_is_free_tried else 1) * wanted_elbow  # elbow: +1 up, -1 down
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = (
@@ -1814,7 +1816,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         cos_q3_tried = a3_by_length_26 * cos_swing_q3_tried + d4_by_length_26 * sin_swing_q3_tried
         sin_q3_tried = a3_by_length_26 * sin_swing_q3_tried - d4_by_length_26 * cos_swing_q3_tried
         # at a singularity: the angle of the reference
-        if reach_tried > machine_scale_times_free_angle:
+        if reach_tried > product_in_sin_q1_tried:
             arm_along_q2_tried = a3 * sin_q3_tried + d4 * cos_q3_tried
             arm_across_q2_tried = a2 + a3 * cos_q3_tried - d4 * sin_q3_tried
             # rotation by q2 that takes the arm to its target point
@@ -1825,8 +1827,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried / length_q2_tried
             sin_q2_tried = across_q2_tried / length_q2_tried
         else:
-            cos_q2_tried = cos(reference_a2)
-            sin_q2_tried = sin(reference_a2)
+            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * round
+            cos_q2_tried = cos(sum_in_sin_q2_tried)
+            sin_q2_tried = sin(sum_in_sin_q2_tried)
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
         r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
         r22_from_q123_before_q6_tried = r22_from_q1_tried * cos_q6_tried + r21_from_q1_tried * sin_q6_tried
@@ -1948,6 +1951,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6,
             met_from_q6,
             kept_q6,
+            round,
+            kept_an_angle,
         ) = (
             0,
             1,
@@ -1996,6 +2001,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             0.0,
             0.0,
             0.0,
+            0,
+            False,
         )
         for _ in range(4001):
             place_plus_width = place + width
@@ -2049,6 +2056,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_z,
                         reference_a1,
                         reference_a2,
+                        round,
                         side,
                         start + at * real_of_direction,
                         wanted_elbow,
@@ -2057,19 +2065,31 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 )
                 if isinstance(found, Status):
                     return found
-                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = found
+                (
+                    remainder,
+                    rate,
+                    room_of_trial,
+                    keeps_an_angle,
+                    length_1,
+                    growth_1,
+                    length_2,
+                    growth_2,
+                    length_3,
+                    growth_3,
+                ) = found
             else:
-                remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = (
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                    0.0,
-                )
+                (
+                    remainder,
+                    rate,
+                    room_of_trial,
+                    keeps_an_angle,
+                    length_1,
+                    growth_1,
+                    length_2,
+                    growth_2,
+                    length_3,
+                    growth_3,
+                ) = (0.0, 0.0, 0.0, False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             size = (
                 (length_3 if number_of_start > 15 else (length_2 if number_of_start > 12 else length_1))
                 if stage == 1
@@ -2099,7 +2119,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             is_near = is_settled and (
                 ((not is_known) and (width > 1e-6))
-                or ((least_now <= 0.001) and (width <= 1e-6) and ((room_of_trial <= 1e-6) or (side > 0)))
+                or (
+                    (width <= 1e-6)
+                    and ((least_now <= 0.001) or (round > 0))
+                    and ((room_of_trial <= 1e-6) or (side > 0))
+                )
             )
             if is_near:
                 found = self._joints_at(
@@ -2118,6 +2142,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_z,
                         reference_a1,
                         reference_a2,
+                        round,
                         side,
                         start + real_of_direction * settled_,
                         wanted_elbow,
@@ -2178,7 +2203,34 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             way_ends = (stage == 0) and (place >= end_of_way) and (width <= 0.0)
             turns_back = way_ends and (not onward) and (direction > 0)
-            is_over = (passes_left <= 0) or (way_ends and (not turns_back))
+            kept_an_angle_now = kept_an_angle or (keeps_an_angle and ((stage == 1) or (stage == 2)))
+            q6_minus_start = q6 - start
+            way_ahead = (
+                1e-7
+                + 180.0 * DEGREE
+                + arctan2(
+                    -sin(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
+                    cos(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
+                )
+                if onward
+                else abs(arctan2(sin(q6_minus_start - 1e-7) + 0.0, cos(q6_minus_start - 1e-7) + 0.0))
+            )
+            is_better = (
+                fits
+                and meets_pose
+                and (way_ahead < nearest)
+                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = way_ahead if is_better else nearest
+            goes_round = (
+                kept_an_angle_now
+                and way_ends
+                and (not onward)
+                and (not turns_back)
+                and (nearest_now >= 9.0)
+                and (round < 7)
+            )
+            is_over = (passes_left <= 0) or (way_ends and (not goes_round) and (not turns_back))
             is_shortest = (stage == 1) and (trials >= 11)
             moved = (
                 abs(met_from_q1 - q1)
@@ -2201,24 +2253,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     else (number_of_start_plus_one if number_of_start < 18 else 0)
                 )
             )
-            q6_minus_start = q6 - start
-            way_ahead = (
-                1e-7
-                + 180.0 * DEGREE
-                + arctan2(
-                    -sin(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
-                    cos(1e-7 + 180.0 * DEGREE - q6_minus_start) + 0.0,
-                )
-                if onward
-                else abs(arctan2(sin(q6_minus_start - 1e-7) + 0.0, cos(q6_minus_start - 1e-7) + 0.0))
-            )
-            is_better = (
-                fits
-                and meets_pose
-                and (way_ahead < nearest)
-                and ((not onward) or ((way_ahead > 1e-7) and (way_ahead < sum_in_end_of_way)))
-            )
-            nearest_now = way_ahead if is_better else nearest
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends and (not is_nearest) and (side > 0) and (is_nearest or (next_number == 0))
             part_is_done = start_ends and (not side_ends) and (is_nearest or (next_number == 0))
@@ -2239,10 +2273,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     )
                 )
             )
-            direction_next = -1 if turns_back else direction
+            begins_anew = goes_round or turns_back
+            direction_next = -1 if turns_back else (1 if begins_anew else direction)
             place_next = (
                 0.0
-                if turns_back
+                if begins_anew
                 else (
                     place_plus_width
                     if part_is_done
@@ -2251,7 +2286,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             )
             width_next = (
                 0.0
-                if turns_back
+                if begins_anew
                 else (
                     0.0
                     if part_is_done
@@ -2397,6 +2432,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6_next = begun_q6 if is_near else (2.0 * met_from_q6 - q6 if mirrors else moved_q6)
             met_from_q6_next = begun_q6 if is_near else met_from_q6
             kept_now_q6 = q6 if is_better else kept_q6
+            round_next = round + (1 if goes_round else 0)
             if is_over or (not looked_for):
                 break
             stage = next_stage
@@ -2446,6 +2482,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6 = q6_next
             met_from_q6 = met_from_q6_next
             kept_q6 = kept_now_q6
+            round = round_next
+            kept_an_angle = kept_an_angle_now
         return (
             nearest_now < 9.0,
             (nearest_now if nearest_now < 9.0 else 0.0),

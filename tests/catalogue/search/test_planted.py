@@ -251,6 +251,32 @@ def test_a_free_first_axis_is_turned_to_where_the_pose_is_met() -> None:
     assert missed(robot, axes, np.zeros_like(axes))[0] < 1e-6
 
 
+SHORT = {**ARM, "a3": 0.0, "d4": ARM["a2"]}
+AT_ZERO, IN_METRES = {**SHORT, "a1": 0.0}, {k: v / 1000.0 for k, v in SHORT.items()}
+NEARLY_FREE = (
+    (SHORT, 1e-3, (-180.0, 179.9999999, 90.0, -89.9999, 180.0, 90.0)),
+    (IN_METRES, 1e-6, (-90.01, -179.999999999999, 90.0, -48.520286279941644, -179.999999999, 180.000000001)),
+    (AT_ZERO, 1e-3, (-89.9999, -90.0, 89.9999, -179.9999, 180.0, -90.0001)),
+    (AT_ZERO, 1e-3, (90.0, 90.0, 90.000001, -179.999999999, 90.0, 176.4440058711677)),
+    (AT_ZERO, 8.0, (101.22729003889083, 90.0, 90.0001, 29.471001029288914, -90.0001, 0.001)),
+    ({**AT_ZERO, "d6": 0.0}, 1e-3, (13.632339509401248, -90.0, 90.000001, 180.000001, 0.0, -89.999999)),
+)
+"""Lengths, the lateral offset, and axes at which the elbow is folded and axis 1 or 2 nearly free."""
+
+
+@pytest.mark.parametrize("case", range(len(NEARLY_FREE)))
+def test_a_nearly_free_axis_is_turned_until_the_pose_is_met(case: int) -> None:
+    """Only some of its values leave no residual, and those that the reference has are others."""
+    lengths, lateral, row = NEARLY_FREE[case]
+    robot, axes = softkin.Ac6RZRYRYRXRYRZJ6Offset(**lengths, j6_offset_x=lateral), np.array([row])
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, np.zeros_like(axes))
+    assert statuses.tolist() == [Status.OK]
+    reached, turned, _, _ = robot.forward_batch(found)
+    assert np.abs(reached - positions).max() < 1e-11 * sum(lengths.values())
+    assert np.abs(turned - rotations).max() < 1e-11
+
+
 @pytest.mark.parametrize("away", (1e6, 9e8))
 def test_a_reference_many_turns_away_loses_no_pose(away: float) -> None:
     case = planted("anywhere", 60.0, 40, 19)

@@ -22,6 +22,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
+from derive.kinematics.search.loop import rounds
 from derive.kinematics.search.loop.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
 from derive.kinematics.search.loop.starts import (
     POINTS,
@@ -133,23 +134,21 @@ def search_program(mechanism: Mechanism, steps: Steps, arguments: Sequence[sp.Sy
     assert mechanism.search is not None
     joints, eliminated = [j.symbol for j in mechanism.solved_joints], mechanism.search.is_eliminated
     most = MOST_WHERE_ELIMINATED if eliminated else MOST_PASSES
-    lengths = lengths_of(steps.trial)
+    lengths, has_rounds = lengths_of(steps.trial), rounds.has_angles(steps.trial)
     body = (
         *_looked(steps.look, arguments),
         *_tried(steps, arguments, lengths),
         *_met(steps, arguments, mechanism, joints),
         *(twins_now(mechanism.solved_joints, _NEAREST - AHEAD, _is_at(_SETTLING), _NEAR) if eliminated else ()),
         *_next_start(lengths, SIDE in steps.trial.inputs, has_twins=eliminated),
-        *_ends(),
+        *_ends(has_rounds=has_rounds),
     )
     begin = {_STAGE: _LOOKING, DIRECTION: _ONE, SIDE: _ONE, _NEAREST: _FAR, _PASSES_LEFT: sp.Integer(most)}
-    begin |= {
-        _PLACE: Select(ONWARD, AHEAD, _ZERO),
-        _MIRRORED: sp.false,
-        IS_NEWTON: sp.false,
-        **dict.fromkeys(_SETTLED, _FAR),
-    }
+    begin |= {_PLACE: Select(ONWARD, AHEAD, _ZERO), _MIRRORED: sp.false, IS_NEWTON: sp.false}
+    begin |= dict.fromkeys(_SETTLED, _FAR)
     following = _following(joints, COST_WHERE_ELIMINATED if eliminated else COST_OF_A_STALL)
+    if has_rounds:
+        begin, following = begin | rounds.BEGUN, following | rounds.FOLLOWING
     if eliminated:
         begin |= {HAS_TWIN: sp.false, TWO_WAYS: sp.false}
         following |= {HAS_TWIN: flag("has_twin_now"), TWO_WAYS: flag("has_two_ways")}
@@ -189,7 +188,7 @@ def _joints_out(word: str, mechanism: Mechanism, values: Mapping[sp.Symbol, sp.E
 def _call(
     program: Program, arguments: Sequence[sp.Symbol], given: Mapping[sp.Symbol, sp.Expr], wanted: sp.Basic
 ) -> Call:
-    flags = {IS_ROUNDING.name: IS_ROUNDING, FITS: IS_ROUNDING}
+    flags = {IS_ROUNDING.name: IS_ROUNDING, FITS: IS_ROUNDING, rounds.KEEPS.name: rounds.KEEPS}
     return call_with(program, arguments, given, lambda name: called(name, flags.get(name, ERROR)), wanted)
 
 
@@ -215,8 +214,11 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     """A trial, and whether the joint value is settled."""
     direction, ends = ToReal(DIRECTION), (_PLACE, _PLACE + _WIDTH)
     is_trial = sp.Or(_is_at(_SHORTENING), _is_at(_SETTLING))
-    given = {TRIED: START + direction * AT, SIDE: SIDE}
-    yield _call(steps.trial, arguments, {s: v for s, v in given.items() if s in steps.trial.inputs}, is_trial)
+    has_rounds = rounds.has_angles(steps.trial)
+    given = {SIDE: SIDE, rounds.ROUND: rounds.ROUND if has_rounds else _ZERO}
+    yield _call(steps.trial, arguments, given | {TRIED: START + direction * AT}, is_trial)
+    if has_rounds:
+        yield rounds.keeps_now(is_trial)
     chosen = [
         of_length(lengths, _NUMBER, [real(f"{n}_{k}") for k in range(1, 1 + lengths)]) if lengths else _ZERO
         for n in ("length", "growth")
@@ -229,16 +231,15 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     yield Let(real("aside_now"), Select(flag("is_shortest"), turned_by_a_sixth(), _ASIDE))
     yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(is_point(_WIDTH))))
     # a simple root leaves no residual on its branch; the other side of a step counts only where its roots join
-    is_simple = sp.And(sp.Le(LEAST_NOW, _NEAR), sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
+    leaves_little = sp.Or(sp.Le(LEAST_NOW, _NEAR), *([sp.Gt(rounds.ROUND, 0)] if has_rounds else []))
+    is_simple = sp.And(leaves_little, sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
     yield Let(flag("is_known"), sp.Or(*[sp.Le(sp.Abs(SETTLED - known), _SAME) for known in _SETTLED]))
     narrow = is_narrow(_WIDTH)
     is_new = sp.Or(sp.And(narrow, is_simple), sp.And(sp.Not(narrow), sp.Not(flag("is_known"))))
     yield Let(flag("is_near"), sp.And(flag("is_settled"), is_new))
     if steps.joints_at is None:
         return
-    given = {TRIED: START + direction * SETTLED, SIDE: SIDE}
-    given = {s: v for s, v in given.items() if s in steps.joints_at.inputs}
-    yield _call(steps.joints_at, arguments, given, flag("is_near"))
+    yield _call(steps.joints_at, arguments, given | {TRIED: START + direction * SETTLED}, flag("is_near"))
 
 
 def _met(
@@ -292,7 +293,7 @@ def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[L
     yield Let(real("place_of_start"), Select(flag("seeks_length"), _PLACE, place))
 
 
-def _ends() -> Iterator[Let]:
+def _ends(*, has_rounds: bool) -> Iterator[Let]:
     """What the search is at in the next pass, and whether it is over."""
     meets = sp.Or(flag("is_near"), flag("mirrors"), sp.And(_is_at(_MEETING), sp.Not(flag("steps_end"))))
     shortens = sp.Or(flag("seeks_length"), sp.And(_is_at(_SHORTENING), sp.Not(flag("is_shortest"))))
@@ -303,7 +304,10 @@ def _ends() -> Iterator[Let]:
     turns_back = sp.And(flag("way_ends"), sp.Not(ONWARD), sp.Gt(DIRECTION, 0))
     yield Let(flag("turns_back"), turns_back)
     is_done = sp.And(flag("way_ends"), sp.Not(flag("turns_back")))
-    yield Let(flag("is_over"), sp.Or(is_done, sp.Le(_PASSES_LEFT, 0)))
+    is_lost = sp.And(is_done, sp.Not(ONWARD), sp.Ge(real("nearest_now"), _FAR))
+    yield rounds.goes_round(is_lost) if has_rounds else Let(rounds.GOES_ROUND, sp.false)
+    yield Let(flag("begins_anew"), sp.Or(flag("turns_back"), rounds.GOES_ROUND))
+    yield Let(flag("is_over"), sp.Or(sp.And(is_done, sp.Not(rounds.GOES_ROUND)), sp.Le(_PASSES_LEFT, 0)))
 
 
 def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Symbol, sp.Expr]:
@@ -320,9 +324,9 @@ def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Sym
     is_new = sp.Or(flag("is_near"), flag("mirrors"))
     found: dict[sp.Symbol, sp.Expr] = {
         _STAGE: count("next_stage"),
-        DIRECTION: Select(flag("turns_back"), sp.Integer(-1), DIRECTION),
-        _PLACE: Select(flag("turns_back"), _ZERO, place),
-        _WIDTH: Select(flag("turns_back"), _ZERO, width),
+        DIRECTION: Select(flag("turns_back"), sp.Integer(-1), Select(flag("begins_anew"), _ONE, DIRECTION)),
+        _PLACE: Select(flag("begins_anew"), _ZERO, place),
+        _WIDTH: Select(flag("begins_anew"), _ZERO, width),
         SIDE: Select(flag("part_ends"), _ONE, Select(flag("side_ends"), sp.Integer(-1), SIDE)),
         _NUMBER: count("number_now"),
         _SHORTEST: real("shortest_now"),

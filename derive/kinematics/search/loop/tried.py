@@ -15,6 +15,7 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Root, Select, ToReal, larger
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import TRIED, count, flag, real
+from derive.kinematics.search.loop.rounds import KEEPS
 from derive.kinematics.search.loop.starts import inside
 from derive.kinematics.search.programs import Trial, roots_named
 from derive.kinematics.search.slopes import slope_name, with_slopes
@@ -52,6 +53,7 @@ def try_program(trial: Trial) -> Program:
     bound = {s.name for s in differentiated if isinstance(s, Let)}
     slope = {n: slope_name(n) if slope_name(n) in bound else _ZERO for n in (value, *trial.lengths)}
     outputs = [Output(REMAINDER.name, value), Output(RATE.name, slope[value]), Output(ROOM.name, trial.room)]
+    outputs += [Output(KEEPS.name, trial.keeps)] if trial.lengths else []
     for k, name in enumerate(trial.lengths, 1):
         outputs += [Output(f"length_{k}", name), Output(f"growth_{k}", name * slope[name])]
     program = normalise("try_joint", differentiated, outputs)

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 9831
+    VALUES = 9982
 
     def step_on_closure(self, given: Values, status: Codes) -> Values:
         """A step of all joints towards the pose, and the error before it."""
@@ -583,15 +583,25 @@ class ArrayPrograms(Programs):
             wanted_shoulder,
             wanted_wrist,
         ) = given
-        begun_q1 = atan2(sin(reference_a1), cos(reference_a1))
-        begun_q2 = atan2(sin(reference_a2), cos(reference_a2))
-        begun_q3 = atan2(sin(reference_a3), cos(reference_a3))
-        begun_q4 = atan2(sin(reference_a4), cos(reference_a4))
-        begun_q5 = atan2(sin(reference_a5), cos(reference_a5))
-        begun_q6 = atan2(sin(reference_a6), cos(reference_a6))
+        shared_value = atan2(sin(reference_a1), cos(reference_a1))
+        shared_value_2 = atan2(sin(reference_a2), cos(reference_a2))
+        shared_value_3 = atan2(sin(reference_a3), cos(reference_a3))
+        shared_value_4 = atan2(sin(reference_a4), cos(reference_a4))
+        shared_value_5 = atan2(sin(reference_a5), cos(reference_a5))
+        shared_value_6 = atan2(sin(reference_a6), cos(reference_a6))
         # one step towards the pose
-        followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = initial(
-            begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, 9.0, False
+        (
+            followed_q1,
+            followed_q2,
+            followed_q3,
+            followed_q4,
+            followed_q5,
+            followed_q6,
+            error_before,
+            steps_left,
+            is_newton,
+        ) = initial(
+            shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
         )
         for _ in range(65):
             found = self.step_on_closure(
@@ -619,41 +629,51 @@ class ArrayPrograms(Programs):
                 status,
             )
             error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
-            way_from_reference = (
-                absolute(begun_q1 - moved_q1)
-                + absolute(begun_q2 - moved_q2)
-                + absolute(begun_q3 - moved_q3)
-                + absolute(begun_q4 - moved_q4)
-                + absolute(begun_q5 - moved_q5)
-                + absolute(begun_q6 - moved_q6)
-            )
             newton_next = (opposite(is_newton)) & (error > 0.9 * error_before)
+            shared_sum = (
+                absolute(moved_q1 - shared_value)
+                + absolute(moved_q2 - shared_value_2)
+                + absolute(moved_q3 - shared_value_3)
+                + absolute(moved_q4 - shared_value_4)
+                + absolute(moved_q5 - shared_value_5)
+                + absolute(moved_q6 - shared_value_6)
+            )
             done = (
                 (error <= 1e-14)
-                | (way_from_reference > 0.1)
+                | (shared_sum > 0.1)
+                | (steps_left <= 0)
                 | (error > 0.999 * error_before)
                 | ((error <= 1e-11) & (2.0 * error > error_before))
             )
             if settled(done, status):
                 break
-            followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = (
-                advanced(
-                    done,
-                    (
-                        followed_q1,
-                        followed_q2,
-                        followed_q3,
-                        followed_q4,
-                        followed_q5,
-                        followed_q6,
-                        error_before,
-                        is_newton,
-                    ),
-                    (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, newton_next),
-                )
+            (
+                followed_q1,
+                followed_q2,
+                followed_q3,
+                followed_q4,
+                followed_q5,
+                followed_q6,
+                error_before,
+                steps_left,
+                is_newton,
+            ) = advanced(
+                done,
+                (
+                    followed_q1,
+                    followed_q2,
+                    followed_q3,
+                    followed_q4,
+                    followed_q5,
+                    followed_q6,
+                    error_before,
+                    steps_left,
+                    is_newton,
+                ),
+                (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, steps_left - 1, newton_next),
             )
         found = run_where(
-            (error <= 1e-11) & (way_from_reference <= 0.1),
+            (error <= 1e-11) & (shared_sum <= 0.1),
             self.is_on_branch,
             (
                 followed_q1,
@@ -1410,6 +1430,7 @@ class ArrayPrograms(Programs):
             goal_z,
             reference_a1,
             reference_a2,
+            round,
             side,
             tried,
             wanted_elbow,
@@ -1423,6 +1444,7 @@ class ArrayPrograms(Programs):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        product_in_cos_q1_tried = select(round > 0, 1e-5, 2e-12) * k.machine_scale
         slope_wrist_x_tried = k.j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = k.j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
         slope_distance_q1_tried = select(
@@ -1432,9 +1454,10 @@ class ArrayPrograms(Programs):
             0.0,
         )
 
-        def elsewhere_cos_q1_tried(reference_a1: Real, side: Whole) -> Reals:
-            cos_q1_tried = side * cos(reference_a1)
-            sin_q1_tried = side * sin(reference_a1)
+        def elsewhere_cos_q1_tried(reference_a1: Real, round: Whole) -> Reals:
+            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * round
+            cos_q1_tried = cos(sum_in_cos_q1_tried)
+            sin_q1_tried = sin(sum_in_cos_q1_tried)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
@@ -1448,10 +1471,10 @@ class ArrayPrograms(Programs):
         slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried * sin_q1_tried) * one_by_distance_q1_tried
         # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
-            distance_q1_tried > k.machine_scale_times_free_angle,
+            distance_q1_tried > product_in_cos_q1_tried,
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1, side),
+            (reference_a1, round),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1497,8 +1520,7 @@ class ArrayPrograms(Programs):
         slope_divisor_of_cos_q3_tried = select(holds, slope_divisor_of_cos_q3_tried, 0.0)
         one_by_sum_q3_tried = 1.0 / divisor_of_cos_q3_tried
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) * one_by_sum_q3_tried
-        cos_q1_is_free_tried = distance_q1_tried <= k.machine_scale_times_free_angle
-        sign_elbow_tried = select(opposite(cos_q1_is_free_tried), side, 1) * wanted_elbow  # elbow: +1 up, -1 down
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
@@ -1528,9 +1550,10 @@ class ArrayPrograms(Programs):
         slope_cos_q3_tried = k.a3_by_length_26 * slope_cos_swing_q3_tried + k.d4_by_length_26 * slope_sin_swing_q3_tried
         slope_sin_q3_tried = k.a3_by_length_26 * slope_sin_swing_q3_tried - k.d4_by_length_26 * slope_cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
-            cos_q2_tried = cos(reference_a2)
-            sin_q2_tried = sin(reference_a2)
+        def elsewhere_cos_q2_tried(reference_a2: Real, round: Whole) -> Reals:
+            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * round
+            cos_q2_tried = cos(sum_in_cos_q2_tried)
+            sin_q2_tried = sin(sum_in_cos_q2_tried)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
@@ -1574,10 +1597,10 @@ class ArrayPrograms(Programs):
         ) * one_by_root_of_length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
-            reach_tried > k.machine_scale_times_free_angle,
+            reach_tried > product_in_cos_q1_tried,
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (reference_a2,),
+            (reference_a2, round),
         )
         sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
         cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
@@ -1613,16 +1636,10 @@ class ArrayPrograms(Programs):
             slope_r11_from_q123_tried - r12_from_q123_tried
         ) * sin_q6_tried
         cos_swing_q3_tried_squared = cos_swing_q3_tried * cos_swing_q3_tried
-        sum_in_room_tried = cos_swing_q3_tried_squared - 1.000000000001
-
-        def elsewhere_room_tried(sum_in_room_tried: Real) -> Reals:
-            room_tried = select(
-                -sum_in_room_tried <= 1.0, select(-sum_in_room_tried <= 1.0, -sum_in_room_tried, 1.0), 1.0
-            )
-            return (room_tried,)
-
-        room_tried = select(-sum_in_room_tried <= 0.0, select(-sum_in_room_tried <= 0.0, -sum_in_room_tried, 0.0), 0.0)
-        (room_tried,) = elsewhere(cos_q1_is_free_tried, (room_tried,), elsewhere_room_tried, (sum_in_room_tried,))
+        room_tried = 1.000000000001 - cos_swing_q3_tried_squared
+        keeps_tried = (absolute(distance_q1_tried) <= k.product_in_keeps_tried) | (
+            absolute(reach_tried) <= k.product_in_keeps_tried
+        )
         turning_length_3_tried = root(0.2499999999989999 + cos_swing_q3_tried_squared)
         slope_turning_length_3_tried = select(
             turning_length_3_tried > 0.0,
@@ -1635,6 +1652,7 @@ class ArrayPrograms(Programs):
             -r12_from_q123_before_q6_tried,
             -slope_r12_from_q123_before_q6_tried,
             room_tried,
+            keeps_tried,
             distance_q1_tried,
             distance_q1_tried * slope_distance_q1_tried,
             reach_tried,
@@ -1660,6 +1678,7 @@ class ArrayPrograms(Programs):
             goal_z,
             reference_a1,
             reference_a2,
+            round,
             side,
             tried,
             wanted_elbow,
@@ -1673,10 +1692,12 @@ class ArrayPrograms(Programs):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
+        product_in_sin_q1_tried = select(round > 0, 1e-5, 2e-12) * k.machine_scale
 
-        def elsewhere_cos_q1_tried(reference_a1: Real, side: Whole) -> Reals:
-            cos_q1_tried = side * cos(reference_a1)
-            sin_q1_tried = side * sin(reference_a1)
+        def elsewhere_cos_q1_tried(reference_a1: Real, round: Whole) -> Reals:
+            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * round
+            cos_q1_tried = cos(sum_in_sin_q1_tried)
+            sin_q1_tried = sin(sum_in_sin_q1_tried)
             return (cos_q1_tried, sin_q1_tried)
 
         along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
@@ -1685,10 +1706,10 @@ class ArrayPrograms(Programs):
         sin_q1_tried = across_q1_tried / distance_q1_tried
         # at a singularity: the angle of the reference
         cos_q1_tried, sin_q1_tried = elsewhere(
-            distance_q1_tried > k.machine_scale_times_free_angle,
+            distance_q1_tried > product_in_sin_q1_tried,
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1, side),
+            (reference_a1, round),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1706,8 +1727,7 @@ class ArrayPrograms(Programs):
         sum_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         divisor_of_cos_q3_tried = select(sum_q3_tried > 0.0, sum_q3_tried, 1.0)
         cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried) / divisor_of_cos_q3_tried
-        cos_q1_is_free_tried = distance_q1_tried <= k.machine_scale_times_free_angle
-        sign_elbow_tried = select(opposite(cos_q1_is_free_tried), side, 1) * wanted_elbow  # elbow: +1 up, -1 down
+        sign_elbow_tried = side * wanted_elbow  # elbow: +1 up, -1 down
         # sine squared, times the squared scale
         sine_square_q3_tried = one_less_cos_q3_tried * one_plus_cos_q3_tried
         sin_swing_q3_tried = 2.0 * root(sine_square_q3_tried) * sign_elbow_tried / divisor_of_cos_q3_tried
@@ -1715,9 +1735,10 @@ class ArrayPrograms(Programs):
         cos_q3_tried = k.a3_by_length_26 * cos_swing_q3_tried + k.d4_by_length_26 * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_length_26 * sin_swing_q3_tried - k.d4_by_length_26 * cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(reference_a2: Real) -> Reals:
-            cos_q2_tried = cos(reference_a2)
-            sin_q2_tried = sin(reference_a2)
+        def elsewhere_cos_q2_tried(reference_a2: Real, round: Whole) -> Reals:
+            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * round
+            cos_q2_tried = cos(sum_in_sin_q2_tried)
+            sin_q2_tried = sin(sum_in_sin_q2_tried)
             return (cos_q2_tried, sin_q2_tried)
 
         arm_along_q2_tried = k.a3 * sin_q3_tried + k.d4 * cos_q3_tried
@@ -1731,10 +1752,10 @@ class ArrayPrograms(Programs):
         sin_q2_tried = across_q2_tried / length_q2_tried
         # at a singularity: the angle of the reference
         cos_q2_tried, sin_q2_tried = elsewhere(
-            reach_tried > k.machine_scale_times_free_angle,
+            reach_tried > product_in_sin_q1_tried,
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (reference_a2,),
+            (reference_a2, round),
         )
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
         r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
@@ -1857,6 +1878,8 @@ class ArrayPrograms(Programs):
             q6,
             met_from_q6,
             kept_q6,
+            round,
+            kept_an_angle,
         ) = initial(
             0,
             1,
@@ -1905,6 +1928,8 @@ class ArrayPrograms(Programs):
             0.0,
             0.0,
             0.0,
+            0,
+            False,
         )
         for _ in range(4001):
             place_plus_width = place + width
@@ -1958,15 +1983,27 @@ class ArrayPrograms(Programs):
                     goal_z,
                     reference_a1,
                     reference_a2,
+                    round,
                     side,
                     start + at * real_of_direction,
                     wanted_elbow,
                     wanted_shoulder,
                 ),
                 status,
-                (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+                (0.0, 0.0, 0.0, False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
-            remainder, rate, room_of_trial, length_1, growth_1, length_2, growth_2, length_3, growth_3 = found
+            (
+                remainder,
+                rate,
+                room_of_trial,
+                keeps_an_angle,
+                length_1,
+                growth_1,
+                length_2,
+                growth_2,
+                length_3,
+                growth_3,
+            ) = found
             size = select(
                 stage == 1,
                 select(number_of_start > 15, length_3, select(number_of_start > 12, length_2, length_1)),
@@ -2000,7 +2037,7 @@ class ArrayPrograms(Programs):
             )
             is_near = is_settled & (
                 ((opposite(is_known)) & (width > 1e-6))
-                | ((least_now <= 0.001) & (width <= 1e-6) & ((room_of_trial <= 1e-6) | (side > 0)))
+                | ((width <= 1e-6) & ((least_now <= 0.001) | (round > 0)) & ((room_of_trial <= 1e-6) | (side > 0)))
             )
             found = run_where(
                 is_near,
@@ -2020,6 +2057,7 @@ class ArrayPrograms(Programs):
                     goal_z,
                     reference_a1,
                     reference_a2,
+                    round,
                     side,
                     start + real_of_direction * settled_,
                     wanted_elbow,
@@ -2076,7 +2114,31 @@ class ArrayPrograms(Programs):
             )
             way_ends = (stage == 0) & (place >= end_of_way) & (width <= 0.0)
             turns_back = way_ends & (opposite(onward)) & (direction > 0)
-            is_over = (passes_left <= 0) | (way_ends & (opposite(turns_back)))
+            kept_an_angle_now = kept_an_angle | (keeps_an_angle & ((stage == 1) | (stage == 2)))
+            q6_minus_start = q6 - start
+            way_ahead = select(
+                onward,
+                1e-7
+                + 180.0 * DEGREE
+                + atan2(-sin(1e-7 + 180.0 * DEGREE - q6_minus_start), cos(1e-7 + 180.0 * DEGREE - q6_minus_start)),
+                absolute(atan2(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7))),
+            )
+            is_better = (
+                fits
+                & meets_pose
+                & (way_ahead < nearest)
+                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_end_of_way)))
+            )
+            nearest_now = select(is_better, way_ahead, nearest)
+            goes_round = (
+                kept_an_angle_now
+                & way_ends
+                & (opposite(onward))
+                & (opposite(turns_back))
+                & (nearest_now >= 9.0)
+                & (round < 7)
+            )
+            is_over = (passes_left <= 0) | (way_ends & (opposite(goes_round)) & (opposite(turns_back)))
             is_shortest = (stage == 1) & (trials >= 11)
             moved = (
                 absolute(met_from_q1 - q1)
@@ -2099,21 +2161,6 @@ class ArrayPrograms(Programs):
                     select(number_of_start < 18, number_of_start_plus_one, 0),
                 ),
             )
-            q6_minus_start = q6 - start
-            way_ahead = select(
-                onward,
-                1e-7
-                + 180.0 * DEGREE
-                + atan2(-sin(1e-7 + 180.0 * DEGREE - q6_minus_start), cos(1e-7 + 180.0 * DEGREE - q6_minus_start)),
-                absolute(atan2(sin(q6_minus_start - 1e-7), cos(q6_minus_start - 1e-7))),
-            )
-            is_better = (
-                fits
-                & meets_pose
-                & (way_ahead < nearest)
-                & ((opposite(onward)) | ((way_ahead > 1e-7) & (way_ahead < sum_in_end_of_way)))
-            )
-            nearest_now = select(is_better, way_ahead, nearest)
             is_nearest = nearest_now <= 2e-7 + place
             side_ends = start_ends & (opposite(is_nearest)) & (side > 0) & (is_nearest | (next_number == 0))
             part_is_done = start_ends & (opposite(side_ends)) & (is_nearest | (next_number == 0))
@@ -2134,9 +2181,10 @@ class ArrayPrograms(Programs):
                     ),
                 ),
             )
-            direction_next = select(turns_back, -1, direction)
+            begins_anew = goes_round | turns_back
+            direction_next = select(turns_back, -1, select(begins_anew, 1, direction))
             place_next = select(
-                turns_back,
+                begins_anew,
                 0.0,
                 select(
                     part_is_done,
@@ -2145,7 +2193,7 @@ class ArrayPrograms(Programs):
                 ),
             )
             width_next = select(
-                turns_back,
+                begins_anew,
                 0.0,
                 select(
                     part_is_done,
@@ -2289,6 +2337,7 @@ class ArrayPrograms(Programs):
             q6_next = select(is_near, begun_q6, select(mirrors, 2.0 * met_from_q6 - q6, moved_q6))
             met_from_q6_next = select(is_near, begun_q6, met_from_q6)
             kept_now_q6 = select(is_better, q6, kept_q6)
+            round_next = round + select(goes_round, 1, 0)
             done = is_over | (opposite(looked_for))
             if settled(done, status):
                 break
@@ -2340,6 +2389,8 @@ class ArrayPrograms(Programs):
                 q6,
                 met_from_q6,
                 kept_q6,
+                round,
+                kept_an_angle,
             ) = advanced(
                 done,
                 (
@@ -2390,6 +2441,8 @@ class ArrayPrograms(Programs):
                     q6,
                     met_from_q6,
                     kept_q6,
+                    round,
+                    kept_an_angle,
                 ),
                 (
                     next_stage,
@@ -2439,6 +2492,8 @@ class ArrayPrograms(Programs):
                     q6_next,
                     met_from_q6_next,
                     kept_now_q6,
+                    round_next,
+                    kept_an_angle_now,
                 ),
             )
         return (
