@@ -183,7 +183,7 @@ def test_what_the_standard_has_no_element_for() -> None:
     assert private == []
     base = _only(root, ".//p:pou[@name='Softkin_Kinematics']")
     hidden = [e for e in base.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None]
-    assert [e.attrib["name"] for e in hidden] == ["FindAxes", "FindMotion", "Configure"]
+    assert [e.attrib["name"] for e in hidden] == ["FindAxes", "FindNearest", "FindMotion", "Configure"]
 
 
 def test_an_interface_is_an_entry_of_the_project() -> None:

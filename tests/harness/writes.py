@@ -13,6 +13,8 @@ WRITERS = ("Initialize", "AxisSettings")
 """The methods that may change an instance: all others are called by several tasks at once."""
 REFERENCE, ITS_WRITERS = "lastAxes", ("Direct", "Inverse")
 """What a user transformation of PacDrive keeps: the robot calls it in one task."""
+EMPTY = "unshared"
+"""What calls hand on that keep nothing in it: the tests look whether it is still empty (`tests/text/controller.py`)."""
 READERS = ("ReadInputs", "Check", "ReadLimits")
 """What Initialize alone calls, and what that calls: see `tests/text/contract/test_interfaces.py`."""
 
@@ -74,7 +76,7 @@ def _check_foreign(node: ast.Expression, facts: Facts) -> None:
 def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) -> None:
     if scope.is_method and variable.scope == "VAR_INPUT":
         raise StError(node.at, f"a method writes the input {variable.name}")
-    if scope.block is not None and runs_by_its_body(scope.block):
+    if variable.name == EMPTY or (scope.block is not None and runs_by_its_body(scope.block)):
         return
     writers = ITS_WRITERS if variable.name == REFERENCE else (*WRITERS, *READERS)
     if scope.is_method and scope.owner.lower() not in map(str.lower, writers):

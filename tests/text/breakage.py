@@ -45,6 +45,7 @@ def declared(text: str) -> str:
 _BLOCK = f"FUNCTION_BLOCK {MECHANISM.block_name}"
 _INITIALIZE, _FORWARD = "METHOD PROTECTED ReadInputs", "METHOD PROTECTED FindPose"
 _INVERSE, _BRANCH, _LIMITS = ("METHOD PRIVATE FindAxes", "METHOD PROTECTED SolveBranch", "METHOD PROTECTED TestLimits")
+_NEAREST = "METHOD PRIVATE FindNearest"
 _WRITTEN, _BYTES = "METHOD PUBLIC AxesToCartesian", "METHOD PRIVATE Configure"
 _SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PROTECTED FindJacobian"
 _DESCRIBE, _MARGINS = "METHOD PROTECTED Describe", "METHOD PROTECTED FindMargins"
@@ -55,7 +56,7 @@ REFUSED = {
     "an undeclared name": Break(_BRANCH, "reach := ", "reached := ", "undeclared name reached"),
     "an undeclared function": Break(_BRANCH, "Softkin_Root", "Softkin_Sqrt", "undeclared function Softkin_Sqrt"),
     "a wrong type": Break(_INITIALIZE, ":= xCheckLimits;", ":= dLinkLength1;", "LREAL does not fit BOOL"),
-    "a wrong type of a number": Break(_INVERSE, "1 - 2*(rest MOD 2)", "1.0", "LREAL does not fit INT"),
+    "a wrong type of a number": Break(_NEAREST, "1 - 2*(rest MOD 2)", "1.0", "LREAL does not fit INT"),
     "a wrong argument": Break(_WRITTEN, "aElements := rot", "aElements := f", "not a SMC_Frame"),
     "a write to a constant input": Break(_FORWARD, "v.dX := ", "a.a0 := ", "VAR_IN_OUT CONSTANT a"),
     "a constant input that is handed on": Break(
@@ -112,7 +113,7 @@ FAULTS = {
     "a root of a negative": Break(_BRANCH, "reach := SQRT(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - axes[2].offset", "a.a2 - a.a4", "not finite"),
-    "an integer that overflows": Break(_INVERSE, ":= 1 - 2*(rest MOD 2)", ":= rest + 32767 + slots", "overflow"),
+    "an integer that overflows": Break(_NEAREST, ":= 1 - 2*(rest MOD 2)", ":= rest + 32767 + slots", "overflow"),
     "numbers that are not checked": Break(
         "FUNCTION Softkin_AreNumbers", "IF index < udiAxes THEN", "IF index < 0 THEN", "not finite"
     ),
@@ -130,7 +131,7 @@ WRONG = {
         _BYTES, "Softkin_PeriodNumber(values[index])", "Softkin_PeriodNumber(values[0])"
     ),
     "AxesToCartesian: a byte without a meaning": Break(_BYTES, "cd := ", "bytes.abyData[30] := 7;\ncd := "),
-    "CartesianToAxes: a tie": Break(_INVERSE, "least - tie", "least + 1.0E6"),
+    "CartesianToAxes: a tie": Break(_NEAREST, "least - tie", "least + 1.0E6"),
     "CartesianToAxes: a tolerance": Break(_BRANCH, "ABS(cosA2) <= boundOfCosA2", "ABS(cosA2) <= 0.9"),
     "CartesianToAxes: an error": Break(
         _BRANCH,

@@ -102,6 +102,8 @@ class Controller:
             aRef=values.axes(self.library, reference),
             cd=values.configuration(self.library, configuration),
         )
+        unshared = self.block.unshared
+        assert not any((*unshared.known, *unshared.kept)), "a call has left something for other tasks"
         return self._answer(status, lambda: values.axes_of(found))
 
     def diagnose(

@@ -57,6 +57,7 @@ BASE_VARIABLES = (
     "warningDistance",
     "tie",
     "axes",
+    "unshared",
     "home",
 )
 """The instance variables of the base block."""

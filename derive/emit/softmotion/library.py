@@ -20,7 +20,7 @@ from derive.emit.softmotion.base import base_text
 from derive.emit.softmotion.block import Block, block_of
 from derive.emit.softmotion.description import description
 from derive.emit.softmotion.inputs import inputs
-from derive.emit.softmotion.methods import methods_of
+from derive.emit.softmotion.methods import called, methods_of
 from derive.emit.softmotion.pictures import row_of
 from derive.emit.softmotion.sample import FOLDER as SAMPLES
 from derive.emit.softmotion.sample import sample_of
@@ -32,6 +32,7 @@ from derive.emit.st.expression import literal
 from derive.emit.st.layout import assigned, beside, case, gathered, quoted
 from derive.emit.st.reserved import refuse_clashes
 from derive.emit.st.rotation import limits_function, rotation_function
+from derive.emit.st.shared import method_name, structures_of
 from derive.ir.constants import COINCIDENT, EDGE, HELD, LARGEST, LEAST, PIVOT, SAME_ROTATION, SOLVABLE
 from derive.ir.program import Status
 from derive.kinematics.kinematics import Kinematics
@@ -238,6 +239,10 @@ def _unit(kinematics: Kinematics, block: Block, contract: Contract, templates: E
         own=contract.own_interface,
         description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
         methods=methods,
+        structures=[
+            (structure.type_in(block.name), method_name(program), structure.types)
+            for program, structure in structures_of(called(kinematics))
+        ],
     )
 
 

@@ -100,7 +100,7 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
     for name in names:
         program = programs.get(name)
         yield _Source(known[name], program)
-        yield from _shared(program, kinematics, contract, ready)
+        yield from _shared(program, kinematics, contract, ready, block.name)
         if name == "GetPositionFromOrientation3":
             yield _Source(_end_point(known[name], block, contract))
 
@@ -131,12 +131,19 @@ def _programs(kinematics: Kinematics) -> dict[str, Program | None]:
     }
 
 
-def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
+def called(kinematics: Kinematics) -> tuple[Program, ...]:
+    """The shared programs that methods of the block call."""
+    return shared(program for program in _programs(kinematics).values() if program is not None)
+
+
+def _shared(
+    program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str], block: str
+) -> Iterator[_Source]:
     """The shared programs that no earlier method calls."""
-    called = shared([program]) if program is not None else ()
-    for inner in (p for p in called if p.name not in ready):
+    inside = shared([program]) if program is not None else ()
+    for inner in (p for p in inside if p.name not in ready):
         ready.add(inner.name)
-        signature = signature_of(inner, spelled_inputs(kinematics), contract)
+        signature = signature_of(inner, spelled_inputs(kinematics), contract, block)
         yield _Source(signature, inner, is_shared=True)
 
 
@@ -212,12 +219,14 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
         spelled |= start_in("start")
     if source.is_shared:
         own = own_names(program, spelled)
-        return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
+        results = {o.name: own[o.name] for o in program.outputs}
+        return printed(program, spelled | own, results, taken, refusal, block=block.name)
     is_branch = signature.name == "SolveBranch"
     stored = _coordinates(program) if signature.name == "FindPose" else {}
     if is_branch and program.calls():  # a call takes the axes as a whole
         stored = {j.axis.name: spelled[j.axis.name] for j in kinematics.mechanism.joints}
-    return printed(program, _positions(signature) | spelled, stored, taken, refusal, is_branch=is_branch)
+    given = _positions(signature) | spelled
+    return printed(program, given, stored, taken, refusal, is_branch=is_branch, block=block.name)
 
 
 def _coordinates(program: Program) -> dict[str, str]:

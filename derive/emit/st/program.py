@@ -13,7 +13,7 @@ from derive.emit.st.expression import StructuredText, limits_of
 from derive.emit.st.layout import INSIDE, WIDTH, commented, conjunction, wrapped
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
-from derive.emit.st.shared import OUTCOME, call_lines
+from derive.emit.st.shared import OUTCOME, call_lines, result_names, structure_of, structures_of
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
@@ -49,17 +49,23 @@ def printed(
     refusal: Refusal,
     *,
     is_branch: bool = False,
+    block: str = "",
 ) -> Printed:
-    """A program in Structured Text. is_branch: whether it is one of several branches, which share their stretches.
+    """A program in Structured Text. is_branch: whether it is one of several branches, which share their stretches;
+    block: the name of the block, which stands in the types of structures.
 
     given: the spellings of the values that it reads; stored: those of the values that it binds to instance variables.
     All other values are bound to temporary variables, whose names are not in `taken`.
     """
     items = structured(program)
+    structures = structures_of({call.program.name: call.program for call in program.calls()}.values())
     stored = {**stored, **kept(program.body)}
+    for called, _ in structures:
+        stored |= result_names(called)
     unread = _unread(program, items)
     own = {name.name: name for name in bound_in(items) if name.name not in stored and name not in unread}
-    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *((SIDE,) if is_branch else ())))
+    whole = [s.variable for _, s in structures]
+    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *whole, *((SIDE,) if is_branch else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     side = (f"{SIDE} : INT;",) if is_branch and has_sides(program) else ()
     if not is_branch:
@@ -68,7 +74,12 @@ def printed(
         body = stretch_lines(program, printer, refusal, lambda part, width: _body(part, printer, refusal, width))
     return Printed(
         variables=tuple((temporaries[name], type_name(type_of(symbol))) for name, symbol in own.items()),
-        declarations=(*declarations(program.body), *_outcome(program, refusal), *side),
+        declarations=(
+            *declarations(program.body),
+            *_outcome(program, refusal),
+            *side,
+            *(f"{s.variable} : {s.type_in(block)};" for _, s in structures),
+        ),
         body="\n".join(body),
         outputs={o.name: printer.print(o.value) for o in decided(program).outputs},
     )
@@ -100,6 +111,8 @@ def _body(body: Sequence[Item], printer: StructuredText, refusal: Refusal, width
             yield from commented([*call_lines(first, printer, refusal), ""], respelled(first.note, printer.names))
             continue
         if isinstance(first, Iterate):
+            if any(c.is_conditional and structure_of(c.program) is not None for c in first.calls()):
+                raise ValueError(f"{first.note}: a pass that does not call reads the structure of the pass before")
             step = list(_body(first.step, printer, refusal, width - INSIDE))
             refused = () if first.otherwise is None else refusal.of_loop(first.otherwise, first)
             lines = list(loop_lines(first, step, printer, refused))

@@ -21,7 +21,7 @@ from derive.ir.symbols import ROTATION_ENTRIES
 from derive.kinematics.flange_rotation import projection_about_z
 from derive.report.reasons import reasons_of_rotation, rotation_texts
 
-_FUNCTION = "Softkin_MakeRotation"
+_FUNCTION, _REPAIR = "Softkin_MakeRotation", "Softkin_RepairRotation"
 _ARRAY = "aElements"
 
 
@@ -34,6 +34,8 @@ class RotationFunction:
     """The test that all elements are numbers."""
     is_exact: tuple[str, ...]
     """The lines of the condition under which nothing has to be repaired."""
+    repair: str
+    """The name of the function that repairs."""
     program: Printed
     reasons: tuple[str, ...]
     """The reasons; the number of a reason is its position, counted from 1."""
@@ -43,16 +45,20 @@ def rotation_function(contract: Contract) -> RotationFunction:
     """The function in Structured Text."""
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     texts = rotation_texts()
-    refusal = Explained(Signature(_FUNCTION, "BOOL", ()), errors, error, reasons_of_rotation(), texts)
     given = {r.name: f"{_ARRAY}[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
-    whole, taken = rotation_program(), (_FUNCTION, _ARRAY, REASON, MISSING)
+    whole, taken = rotation_program(), (_FUNCTION, _REPAIR, _ARRAY, REASON, MISSING)
     count = next(place for place, statement in enumerate(whole.body) if isinstance(statement, Let))
     checks = with_inputs(replace(whole, body=whole.body[:count], outputs=()))
     rest = with_inputs(replace(whole, body=whole.body[count:]))
     printer = StructuredText(given)
     is_exact = wrapped(f"IF {' AND '.join(f'({printer.print(c)})' for c in surely_exact())} THEN")
-    first, program = (printed(p, given, {}, taken, refusal) for p in (checks, rest))
-    return RotationFunction(_FUNCTION, first, tuple(is_exact), program, texts)
+
+    def body(name: str, part: Program) -> Printed:
+        refusal = Explained(Signature(name, "BOOL", ()), errors, error, reasons_of_rotation(), texts)
+        return printed(part, given, {}, taken, refusal)
+
+    first, program = body(_FUNCTION, checks), body(_REPAIR, rest)
+    return RotationFunction(_FUNCTION, first, tuple(is_exact), _REPAIR, program, texts)
 
 
 _ENTRIES = {r.name: f"rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}

@@ -75,7 +75,7 @@ def ending_where_nothing_holds() -> Library:
     written = "\nFindPlatform := Softkin_Names.NoError;"
     text = text_of(MECHANISM)
     assert text.count(written) == 1
-    return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))
+    return compiled_text(file_of(MECHANISM), text.replace(written, "\nplatform.determinant := 0.0;" + written[1:]))
 
 
 @pytest.mark.long
