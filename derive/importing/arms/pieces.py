@@ -74,6 +74,7 @@ def simple(arm: Arm, axes: Sequence[str], limit: float, *, about_z: bool) -> Sim
     symbols = [sp.Symbol(name, real=True) for name in axes]
     own = _in_form(arm, symbols)
     before: Callable[[Sequence[float]], Array] = partial(forward, arm)
+    pieces: tuple[Piece, ...] = ()
     moved: list[Snapped] = []
     for _ in range(_ROUNDS):
         read = tuple(_pieces(normal_factors(own, about_z=about_z), symbols))

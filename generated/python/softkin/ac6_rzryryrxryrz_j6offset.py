@@ -32,8 +32,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 145 additions, 208 multiplications, 6 divisions, 0 square roots, 14 sines
-    inverse: 1831312 additions, 2403638 multiplications, 96574 divisions, 48144 square roots, 96860 sines
-    inverse, all 16 branches: 29301265 additions, 38458304 multiplications, 1545184 divisions, 770304 square
+    inverse: 1831247 additions, 2403638 multiplications, 96574 divisions, 48144 square roots, 96860 sines
+    inverse, all 16 branches: 29300225 additions, 38458304 multiplications, 1545184 divisions, 770304 square
     roots, 1549760 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 27 additions, 50 multiplications, 11 divisions, 3 square roots,
@@ -133,7 +133,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 8568222ea6794af1"
+    KEY = "ac6_rzryryrxryrz_j6offset 0df9c8a95b57fd41"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -766,24 +766,23 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wanted_shoulder,
             wanted_wrist,
         ) = given
-        shared_value = arctan2(sin(reference_a1) + 0.0, cos(reference_a1) + 0.0)
-        shared_value_2 = arctan2(sin(reference_a2) + 0.0, cos(reference_a2) + 0.0)
-        shared_value_3 = arctan2(sin(reference_a3) + 0.0, cos(reference_a3) + 0.0)
-        shared_value_4 = arctan2(sin(reference_a4) + 0.0, cos(reference_a4) + 0.0)
-        shared_value_5 = arctan2(sin(reference_a5) + 0.0, cos(reference_a5) + 0.0)
-        shared_value_6 = arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0)
+        begun_q1 = arctan2(sin(reference_a1) + 0.0, cos(reference_a1) + 0.0)
+        begun_q2 = arctan2(sin(reference_a2) + 0.0, cos(reference_a2) + 0.0)
+        begun_q3 = arctan2(sin(reference_a3) + 0.0, cos(reference_a3) + 0.0)
+        begun_q4 = arctan2(sin(reference_a4) + 0.0, cos(reference_a4) + 0.0)
+        begun_q5 = arctan2(sin(reference_a5) + 0.0, cos(reference_a5) + 0.0)
+        begun_q6 = arctan2(sin(reference_a6) + 0.0, cos(reference_a6) + 0.0)
         # one step towards the pose
-        (
-            followed_q1,
-            followed_q2,
-            followed_q3,
-            followed_q4,
-            followed_q5,
-            followed_q6,
-            error_before,
-            steps_left,
-            is_newton,
-        ) = shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
+        followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = (
+            begun_q1,
+            begun_q2,
+            begun_q3,
+            begun_q4,
+            begun_q5,
+            begun_q6,
+            9.0,
+            False,
+        )
         for _ in range(65):
             found = self._step_on_closure(
                 (
@@ -811,19 +810,18 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             if isinstance(found, Status):
                 return found
             error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
-            newton_next = (not is_newton) and (error > 0.9 * error_before)
-            shared_sum = (
-                abs(moved_q1 - shared_value)
-                + abs(moved_q2 - shared_value_2)
-                + abs(moved_q3 - shared_value_3)
-                + abs(moved_q4 - shared_value_4)
-                + abs(moved_q5 - shared_value_5)
-                + abs(moved_q6 - shared_value_6)
+            way_from_reference = (
+                abs(begun_q1 - moved_q1)
+                + abs(begun_q2 - moved_q2)
+                + abs(begun_q3 - moved_q3)
+                + abs(begun_q4 - moved_q4)
+                + abs(begun_q5 - moved_q5)
+                + abs(begun_q6 - moved_q6)
             )
+            newton_next = (not is_newton) and (error > 0.9 * error_before)
             if (
                 (error <= 1e-14)
-                or (shared_sum > 0.1)
-                or (steps_left <= 0)
+                or (way_from_reference > 0.1)
                 or (error > 0.999 * error_before)
                 or ((error <= 1e-11) and (2.0 * error > error_before))
             ):
@@ -835,9 +833,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             followed_q5 = moved_q5
             followed_q6 = moved_q6
             error_before = error
-            steps_left = steps_left - 1
             is_newton = newton_next
-        if (error <= 1e-11) and (shared_sum <= 0.1):
+        if (error <= 1e-11) and (way_from_reference <= 0.1):
             found = self._is_on_branch(
                 (
                     followed_q1,

@@ -22,17 +22,8 @@ from derive.ir.passes import normalise
 from derive.ir.primitives import Select, ToReal, Wrap
 from derive.ir.program import Call, Iterate, Let, Output, Program
 from derive.ir.symbols import SIDE, TRIED, called, count, flag, real
-from derive.kinematics.search.loop import rounds
+from derive.kinematics.search.loop import rounds, starts
 from derive.kinematics.search.loop.parts import AHEAD_BY, DIRECTION, IS_ROUNDING, SAFE
-from derive.kinematics.search.loop.starts import (
-    POINTS,
-    is_narrow,
-    is_new_length,
-    is_point,
-    next_number,
-    of_length,
-    place_of,
-)
 from derive.kinematics.search.loop.tried import (
     AT,
     BEST_NOW,
@@ -220,21 +211,21 @@ def _tried(steps: Steps, arguments: Sequence[sp.Symbol], lengths: int) -> Iterat
     if has_rounds:
         yield rounds.keeps_now(is_trial)
     chosen = [
-        of_length(lengths, _NUMBER, [real(f"{n}_{k}") for k in range(1, 1 + lengths)]) if lengths else _ZERO
+        starts.of_length(lengths, _NUMBER, [real(f"{n}_{k}") for k in range(1, 1 + lengths)]) if lengths else _ZERO
         for n in ("length", "growth")
     ]
-    yield from better(_is_at(_SHORTENING), chosen[0], sp.Gt(_NUMBER, POINTS))
-    yield from newton_step(ends, direction, is_point(_WIDTH))
+    yield from better(_is_at(_SHORTENING), chosen[0], sp.Gt(_NUMBER, starts.POINTS))
+    yield from newton_step(ends, direction, starts.is_point(_WIDTH))
     yield from shortest_step(ends, direction * chosen[1])
     yield Let(flag("is_shortest"), sp.And(_is_at(_SHORTENING), shortest_is_done()))
     yield Let(real("shortest_now"), Select(flag("is_shortest"), BEST_NOW, _SHORTEST))
     yield Let(real("aside_now"), Select(flag("is_shortest"), turned_by_a_sixth(), _ASIDE))
-    yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(is_point(_WIDTH))))
+    yield Let(flag("is_settled"), sp.And(_is_at(_SETTLING), newton_is_done(starts.is_point(_WIDTH))))
     # a simple root leaves no residual on its branch; the other side of a step counts only where its roots join
     leaves_little = sp.Or(sp.Le(LEAST_NOW, _NEAR), *([sp.Gt(rounds.ROUND, 0)] if has_rounds else []))
     is_simple = sp.And(leaves_little, sp.Or(sp.Gt(SIDE, 0), sp.Le(ROOM, _ROOM)))
     yield Let(flag("is_known"), sp.Or(*[sp.Le(sp.Abs(SETTLED - known), _SAME) for known in _SETTLED]))
-    narrow = is_narrow(_WIDTH)
+    narrow = starts.is_narrow(_WIDTH)
     is_new = sp.Or(sp.And(narrow, is_simple), sp.And(sp.Not(narrow), sp.Not(flag("is_known"))))
     yield Let(flag("is_near"), sp.And(flag("is_settled"), is_new))
     if steps.joints_at is None:
@@ -275,7 +266,7 @@ def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[L
     """The start that follows, if one ends here."""
     is_unsettled = sp.And(flag("is_settled"), sp.Not(flag("is_near")))
     yield Let(flag("start_ends"), sp.Or(is_unsettled, sp.And(flag("steps_end"), sp.Not(flag("mirrors")))))
-    yield Let(count("next_number"), next_number(lengths, _NUMBER, _WIDTH))
+    yield Let(count("next_number"), starts.next_number(lengths, _NUMBER, _WIDTH))
     lacks_none = sp.Or(sp.Not(flag("has_two_ways")), flag("has_twin_now")) if has_twins else sp.true
     yield Let(flag("is_nearest"), sp.And(sp.Le(real("nearest_now"), _PLACE + 2 * AHEAD), lacks_none))
     is_last = sp.Or(flag("is_nearest"), sp.Eq(count("next_number"), 0))
@@ -286,10 +277,10 @@ def _next_start(lengths: int, has_sides: bool, *, has_twins: bool) -> Iterator[L
     moves_on = Select(flag("start_ends"), count("next_number"), _NUMBER)
     yield Let(count("number_now"), Select(flag("is_first"), _ONE, moves_on))
     yield Let(flag("begins"), sp.And(sp.Or(flag("part_ends"), flag("start_ends")), sp.Not(flag("part_is_done"))))
-    of_new_length = is_new_length(lengths, count("number_now")) if lengths else sp.false
+    of_new_length = starts.is_new_length(lengths, count("number_now")) if lengths else sp.false
     yield Let(flag("seeks_length"), sp.And(flag("begins"), of_new_length))
     ends = (_PLACE, _PLACE + _WIDTH)
-    place = place_of(lengths, count("number_now"), ends, real("shortest_now"), real("aside_now"))
+    place = starts.place_of(lengths, count("number_now"), ends, real("shortest_now"), real("aside_now"))
     yield Let(real("place_of_start"), Select(flag("seeks_length"), _PLACE, place))
 
 
@@ -313,7 +304,7 @@ def _ends(*, has_rounds: bool) -> Iterator[Let]:
 def _following(joints: Sequence[sp.Symbol], cost_of_a_stall: int) -> dict[sp.Symbol, sp.Expr]:
     """The state in the next pass."""
     looks, passes_by = _is_at(_LOOKING), sp.Gt(_WIDTH, 0)
-    wider = Select(passes_by, Select(is_narrow(_WIDTH), 8, 2) * _WIDTH, Select(IS_ROUNDING, FIRST, _ZERO))
+    wider = Select(passes_by, Select(starts.is_narrow(_WIDTH), 8, 2) * _WIDTH, Select(IS_ROUNDING, FIRST, _ZERO))
     width = Select(flag("part_is_done"), _ZERO, Select(sp.And(looks, sp.Not(flag("part_ends"))), wider, _WIDTH))
     steps = sp.And(looks, sp.Not(passes_by), sp.Not(IS_ROUNDING))
     place = Select(flag("part_is_done"), _PLACE + _WIDTH, Select(steps, _PLACE + SAFE, _PLACE))

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 9982
+    VALUES = 9966
 
     def step_on_closure(self, given: Values, status: Codes) -> Values:
         """A step of all joints towards the pose, and the error before it."""
@@ -583,25 +583,15 @@ class ArrayPrograms(Programs):
             wanted_shoulder,
             wanted_wrist,
         ) = given
-        shared_value = atan2(sin(reference_a1), cos(reference_a1))
-        shared_value_2 = atan2(sin(reference_a2), cos(reference_a2))
-        shared_value_3 = atan2(sin(reference_a3), cos(reference_a3))
-        shared_value_4 = atan2(sin(reference_a4), cos(reference_a4))
-        shared_value_5 = atan2(sin(reference_a5), cos(reference_a5))
-        shared_value_6 = atan2(sin(reference_a6), cos(reference_a6))
+        begun_q1 = atan2(sin(reference_a1), cos(reference_a1))
+        begun_q2 = atan2(sin(reference_a2), cos(reference_a2))
+        begun_q3 = atan2(sin(reference_a3), cos(reference_a3))
+        begun_q4 = atan2(sin(reference_a4), cos(reference_a4))
+        begun_q5 = atan2(sin(reference_a5), cos(reference_a5))
+        begun_q6 = atan2(sin(reference_a6), cos(reference_a6))
         # one step towards the pose
-        (
-            followed_q1,
-            followed_q2,
-            followed_q3,
-            followed_q4,
-            followed_q5,
-            followed_q6,
-            error_before,
-            steps_left,
-            is_newton,
-        ) = initial(
-            shared_value, shared_value_2, shared_value_3, shared_value_4, shared_value_5, shared_value_6, 9.0, 64, False
+        followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = initial(
+            begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6, 9.0, False
         )
         for _ in range(65):
             found = self.step_on_closure(
@@ -629,51 +619,41 @@ class ArrayPrograms(Programs):
                 status,
             )
             error, moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6 = found
-            newton_next = (opposite(is_newton)) & (error > 0.9 * error_before)
-            shared_sum = (
-                absolute(moved_q1 - shared_value)
-                + absolute(moved_q2 - shared_value_2)
-                + absolute(moved_q3 - shared_value_3)
-                + absolute(moved_q4 - shared_value_4)
-                + absolute(moved_q5 - shared_value_5)
-                + absolute(moved_q6 - shared_value_6)
+            way_from_reference = (
+                absolute(begun_q1 - moved_q1)
+                + absolute(begun_q2 - moved_q2)
+                + absolute(begun_q3 - moved_q3)
+                + absolute(begun_q4 - moved_q4)
+                + absolute(begun_q5 - moved_q5)
+                + absolute(begun_q6 - moved_q6)
             )
+            newton_next = (opposite(is_newton)) & (error > 0.9 * error_before)
             done = (
                 (error <= 1e-14)
-                | (shared_sum > 0.1)
-                | (steps_left <= 0)
+                | (way_from_reference > 0.1)
                 | (error > 0.999 * error_before)
                 | ((error <= 1e-11) & (2.0 * error > error_before))
             )
             if settled(done, status):
                 break
-            (
-                followed_q1,
-                followed_q2,
-                followed_q3,
-                followed_q4,
-                followed_q5,
-                followed_q6,
-                error_before,
-                steps_left,
-                is_newton,
-            ) = advanced(
-                done,
-                (
-                    followed_q1,
-                    followed_q2,
-                    followed_q3,
-                    followed_q4,
-                    followed_q5,
-                    followed_q6,
-                    error_before,
-                    steps_left,
-                    is_newton,
-                ),
-                (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, steps_left - 1, newton_next),
+            followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6, error_before, is_newton = (
+                advanced(
+                    done,
+                    (
+                        followed_q1,
+                        followed_q2,
+                        followed_q3,
+                        followed_q4,
+                        followed_q5,
+                        followed_q6,
+                        error_before,
+                        is_newton,
+                    ),
+                    (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, newton_next),
+                )
             )
         found = run_where(
-            (error <= 1e-11) & (shared_sum <= 0.1),
+            (error <= 1e-11) & (way_from_reference <= 0.1),
             self.is_on_branch,
             (
                 followed_q1,
