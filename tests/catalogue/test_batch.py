@@ -63,6 +63,19 @@ def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
         assert (inverse[1] == Status.OK).all()
 
 
+def test_few_singular_rows_among_many_are_what_they_are_alone() -> None:
+    """Rows whose lost digits are restored by steps wait until all others are computed; among four they need not."""
+    robot = softkin.Ac6ThreeParallel(d1=89.159, a2=-425.0, a3=-392.25, d4=109.15, d5=94.65, d6=82.3)
+    rng = np.random.default_rng(3)
+    axes = rng.uniform(-170.0, 170.0, (2000, 6))
+    axes[::100] = 90.0 * rng.integers(-2, 3, (20, 6)) + 1e-5 * rng.uniform(-1.0, 1.0, (20, 6))
+    positions, rotations = robot.forward_batch(axes)[:2]
+    together = robot.inverse_all_batch(positions, rotations)
+    parts = [robot.inverse_all_batch(positions[k : k + 4], rotations[k : k + 4]) for k in range(0, 2000, 4)]
+    for whole, some in zip(together, zip(*parts, strict=True), strict=True):
+        assert np.array_equal(whole, np.concatenate(some), equal_nan=whole.dtype == float)
+
+
 def test_no_rows(machines: tuple[Machine, ...]) -> None:
     robot = machines[0].robot
     width, size = len(robot.AXES), len(robot.CONFIGURATION)

@@ -11,4 +11,5 @@ polar: f cos v = a and f sin v = b, for an angle v and a length f
 quadratic: a v² + b v + c = 0, for a length v
 shortfall: how much is missing where a step has no root
 spheres: where two circles or three spheres meet, for all unknown lengths
+two_slides: three equations in space for two unknown lengths, of a trial whose turns the rotation gives
 """

@@ -22,6 +22,7 @@ from softkin._array import (
     Vector,
     both_signs,
     reasonable,
+    waiting,
 )
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
@@ -140,8 +141,9 @@ def inverse_all(
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
     of_slots = np.empty((count, width, min(table.count, size) + 8))
     of_signs = of_slots.reshape(*(2,) * robot.BRANCHES, *of_slots.shape[1:])
-    for rows in _chunks(table.count, size):
-        with np.errstate(all="ignore"):
+    again = np.zeros(table.count, bool)
+    for rows, later in _then_those_that_wait(again, size):
+        with np.errstate(all="ignore"), waiting(later):
             poses = table.at(rows)
             found, status = programs.every_branch(
                 poses.position, poses.rotation, robot.BRANCHES, turns, poses.reference
@@ -151,8 +153,22 @@ def inverse_all(
             of_signs[..., i, : poses.count] = value
         axes[rows] = of_slots[:, :, : poses.count].transpose(2, 0, 1)
         statuses[rows] = status.reshape(count, poses.count).T
-        axes[rows][statuses[rows] != Status.OK] = np.nan
+    axes[statuses != Status.OK] = np.nan
     return axes, statuses
+
+
+def _then_those_that_wait(again: Mask, size: int) -> Iterator[tuple[Rows, list[NDArray[np.intp]] | None]]:
+    """All rows in pieces, each with a list for those that wait; then these together, which wait no longer.
+
+    again: false for every row.
+    """
+    for rows in _chunks(len(again), size):
+        later: list[NDArray[np.intp]] = []
+        yield rows, later
+        for waiting_rows in later:
+            again[rows][waiting_rows] = True
+    for rows in _pieces(again, size) if again.any() else ():
+        yield rows, None
 
 
 def _rows_together(values: int, rows: int, slots: int, width: int) -> int:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
@@ -209,16 +211,37 @@ def advanced(done: Truth, state: Reals, following: Reals) -> Values:
     return tuple(np.where(done, old, new) for old, new in zip(state, following, strict=True))
 
 
+_WAITS: ContextVar[list[NDArray[np.intp]] | None] = ContextVar("waits", default=None)
+_FEW = 64
+"""Rows wait where they are fewer than this share of all: a shared program takes as long for one row as for many."""
+
+
+@contextmanager
+def waiting(rows: list[NDArray[np.intp]] | None) -> Iterator[None]:
+    """Few rows that want a shared program do not get it, but are noted (by their last index) to be computed together
+    afterwards. None: every row gets it.
+    """
+    before = _WAITS.set(rows)
+    try:
+        yield
+    finally:
+        _WAITS.reset(before)
+
+
 def run_where(
     wanted: Truth, program: Callable[[Values, Codes], Values], given: Values, status: Codes, nothing: tuple[float, ...]
 ) -> Values:
     """The results of a shared program in the rows where it is wanted; `nothing` in all other rows."""
     shape, found = status.shape, tuple(np.full(status.shape, value) for value in nothing)
     rows = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == Status.OK))
-    if len(rows):
+    if (waits := _WAITS.get()) is not None and 0 < len(rows) * _FEW < status.size:
+        waits.append(rows % shape[-1])
+    elif len(rows):
         own = tuple(np.broadcast_to(value, shape).ravel()[rows] for value in given)
         codes: Codes = np.zeros(len(rows), np.uint8)
-        for column, values in zip(found, program(own, codes), strict=True):
+        with waiting(None):
+            results = program(own, codes)
+        for column, values in zip(found, results, strict=True):
             column.reshape(-1)[rows] = values
         status.reshape(-1)[rows] = codes
     return found

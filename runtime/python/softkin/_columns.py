@@ -65,7 +65,7 @@ class Table:
                 )
             self.rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
 
-    def at(self, rows: slice) -> Poses:
+    def at(self, rows: Rows) -> Poses:
         """The poses of some rows, with repaired rotations."""
         x, y, z = columns(self.positions[rows])
         rotation, refused = _IDENTITY, np.zeros((), np.uint8)
