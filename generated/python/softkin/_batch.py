@@ -167,8 +167,8 @@ def _then_those_that_wait(again: Mask, size: int) -> Iterator[tuple[Rows, list[N
         yield rows, later
         for waiting_rows in later:
             again[rows][waiting_rows] = True
-    for rows in _pieces(again, size) if again.any() else ():
-        yield rows, None
+    if again.any():
+        yield from ((rows, None) for rows in _pieces(again, size))
 
 
 def _rows_together(values: int, rows: int, slots: int, width: int) -> int:
