@@ -13,6 +13,7 @@ from derive.emit.softmotion.library import most_axes
 from derive.emit.softmotion.methods import spelled_inputs
 from derive.emit.st.contract import load
 from derive.emit.st.names import parameter_name, spellings
+from derive.emit.st.shared import structures_of
 from derive.ir.program import Program
 from derive.ir.tree import bound_in
 from derive.kinematics.kinematics import Kinematics
@@ -67,12 +68,16 @@ def spelling_of(kinematics: Kinematics) -> Spelling:
     read = {s.name for program in programs[1:] for s in program.inputs}
     places = [(known[n], text) for n, text in given.items() if not text.isidentifier() and n in read]
     if given:
-        places += [(known[n], text) for n, text in _found_by_the_base(kinematics) if n in known]
+        places += [(known[n], text) for n, text in _held_elsewhere(kinematics) if n in known]
     return Spelling(known, tuple(places))
 
 
-def _found_by_the_base(kinematics: Kinematics) -> Iterator[tuple[str, str]]:
-    """The values that the base block finds, each with its spelling there: the value next to which a turn is chosen."""
+def _held_elsewhere(kinematics: Kinematics) -> Iterator[tuple[str, str]]:
+    """The results of shared programs that stand in a structure, and the values that the base block finds, next to
+    which a turn is chosen: each with its spelling there.
+    """
+    for program, structure in structures_of(kinematics.shared):
+        yield from ((o.name, f"{structure.variable}.{structure.fields[o.name]}") for o in program.outputs)
     for index, joint in enumerate(kinematics.mechanism.joints):
         if joint in kinematics.period_joints:
             yield f"near_{joint.key}", f"choice.aNear[{index}]"

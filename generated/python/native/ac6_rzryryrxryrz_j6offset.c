@@ -1111,7 +1111,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
       reference_a1 = given[12], reference_a2 = given[13], tried = given[16];
-  const int round = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
+  const int rounds_before = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
       wanted_shoulder = (int)given[18];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
@@ -1122,7 +1122,7 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
       - k->d6*goal_r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
-  const double product_in_cos_q1_tried = (round > 0 ? 1e-5 : 2e-12)*k->machine_scale;
+  const double product_in_cos_q1_tried = (rounds_before > 0 ? 1e-5 : 2e-12)*k->machine_scale;
   const double slope_wrist_x_tried = k->j6_offset_x*(goal_r12*cos_q6_tried + goal_r11*sin_q6_tried);
   const double slope_wrist_y_tried = k->j6_offset_x*(goal_r22*cos_q6_tried + goal_r21*sin_q6_tried);
   const double slope_distance_q1_tried = distance_q1_tried > 0.0
@@ -1145,8 +1145,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q1_tried = (slope_across_q1_tried - slope_distance_q1_tried*sin_q1_tried)
         *one_by_distance_q1_tried;
   } else {
-    const double real_of_round = round;
-    const double sum_in_cos_q1_tried = 2.356194490192345*real_of_round + reference_a1;
+    const double real_of_rounds_before = rounds_before;
+    const double sum_in_cos_q1_tried = 2.356194490192345*real_of_rounds_before + reference_a1;
     cos_q1_tried = cos(sum_in_cos_q1_tried); /* at a singularity: the angle of the reference */
     sin_q1_tried = sin(sum_in_cos_q1_tried);
     slope_cos_q1_tried = 0.0;
@@ -1252,8 +1252,8 @@ static softkin_status find_try_joint(const void *machine, const double *given, d
     slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)
         *one_by_root_of_length_q2_tried;
   } else {
-    const double real_of_round = round;
-    const double sum_in_cos_q2_tried = 0.7853981633974483*real_of_round + reference_a2;
+    const double real_of_rounds_before = rounds_before;
+    const double sum_in_cos_q2_tried = 0.7853981633974483*real_of_rounds_before + reference_a2;
     cos_q2_tried = cos(sum_in_cos_q2_tried); /* at a singularity: the angle of the reference */
     sin_q2_tried = sin(sum_in_cos_q2_tried);
     slope_cos_q2_tried = 0.0;
@@ -1308,7 +1308,7 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
       goal_r22 = given[4], goal_r23 = given[5], goal_r31 = given[6], goal_r32 = given[7],
       goal_r33 = given[8], goal_x = given[9], goal_y = given[10], goal_z = given[11],
       reference_a1 = given[12], reference_a2 = given[13], tried = given[16];
-  const int round = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
+  const int rounds_before = (int)given[14], side = (int)given[15], wanted_elbow = (int)given[17],
       wanted_shoulder = (int)given[18];
   const double cos_q6_tried = cos(tried);
   const double sin_q6_tried = sin(tried);
@@ -1319,7 +1319,7 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
       - k->d6*goal_r23;
   /* distance of the point from the axis of q1 */
   const double distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried);
-  const double product_in_sin_q1_tried = (round > 0 ? 1e-5 : 2e-12)*k->machine_scale;
+  const double product_in_sin_q1_tried = (rounds_before > 0 ? 1e-5 : 2e-12)*k->machine_scale;
   double cos_q1_tried, sin_q1_tried;
   if (distance_q1_tried > product_in_sin_q1_tried) {
     const double sign_shoulder_tried = wanted_shoulder; /* shoulder: +1 front, -1 back */
@@ -1329,8 +1329,8 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
     const double across_q1_tried = sign_shoulder_tried*wrist_y_tried;
     sin_q1_tried = across_q1_tried/distance_q1_tried;
   } else {
-    const double real_of_round = round;
-    const double sum_in_sin_q1_tried = 2.356194490192345*real_of_round + reference_a1;
+    const double real_of_rounds_before = rounds_before;
+    const double sum_in_sin_q1_tried = 2.356194490192345*real_of_rounds_before + reference_a1;
     cos_q1_tried = cos(sum_in_sin_q1_tried); /* at a singularity: the angle of the reference */
     sin_q1_tried = sin(sum_in_sin_q1_tried);
   }
@@ -1375,8 +1375,8 @@ static softkin_status find_joints_at(const void *machine, const double *given, d
     cos_q2_tried = along_q2_tried/length_q2_tried; /* at a singularity: the angle of the reference */
     sin_q2_tried = across_q2_tried/length_q2_tried;
   } else {
-    const double real_of_round = round;
-    const double sum_in_sin_q2_tried = 0.7853981633974483*real_of_round + reference_a2;
+    const double real_of_rounds_before = rounds_before;
+    const double sum_in_sin_q2_tried = 0.7853981633974483*real_of_rounds_before + reference_a2;
     cos_q2_tried = cos(sum_in_sin_q2_tried); /* at a singularity: the angle of the reference */
     sin_q2_tried = sin(sum_in_sin_q2_tried);
   }
@@ -1473,7 +1473,7 @@ static softkin_status find_root(const void *machine, const double *given, double
   double q6 = 0.0;
   double met_from_q6 = 0.0;
   double kept_q6 = 0.0;
-  int round = 0;
+  int rounds_before = 0;
   bool kept_an_angle = false;
   double place_plus_width, safe_step, real_of_direction, remainder, rate, room_of_trial, length_1, growth_1,
       length_2, growth_2, length_3, growth_3, size, best_now, way_now, best_now_minus_way_now, newton_place,
@@ -1488,7 +1488,7 @@ static softkin_status find_root(const void *machine, const double *given, double
       met_from_q2_next, kept_now_q2, q3_next, met_from_q3_next, kept_now_q3, q4_next, met_from_q4_next,
       kept_now_q4, q5_next, met_from_q5_next, kept_now_q5, q6_next, met_from_q6_next, kept_now_q6;
   int number_of_start_plus_one, next_number, number_now, next_stage, direction_next, side_next,
-      steps_left_next, passes_left_next, trials_next, round_next;
+      steps_left_next, passes_left_next, trials_next, rounds_before_next;
   bool is_rounding, keeps_an_angle, is_less, is_settled, is_known, is_near, steps_end, meets_pose, fits,
       way_ends, turns_back, kept_an_angle_now, is_better, goes_round, is_over, is_shortest, mirrors,
       part_ends, start_ends, is_nearest, side_ends, part_is_done, begins, is_first, seeks_length,
@@ -1511,7 +1511,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     double results_of_2[10] = {0.0};
     if ((stage == 1) || (stage == 2)) {
       const double arguments_of_2[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, round, side,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, rounds_before, side,
           start_ + at*real_of_direction, wanted_elbow, wanted_shoulder};
       const softkin_status status_of_2 = find_try_joint(k, arguments_of_2, results_of_2, why);
       if (status_of_2 != SOFTKIN_OK) {
@@ -1544,12 +1544,12 @@ static softkin_status find_root(const void *machine, const double *given, double
         || (fabs(settled - settled_3) <= 1e-12) || (fabs(settled - settled_4) <= 1e-12)
         || (fabs(settled - settled_5) <= 1e-12) || (fabs(settled - settled_6) <= 1e-12);
     is_near = is_settled && (((!is_known) && (width > 1e-6))
-        || ((width <= 1e-6) && ((least_now <= 0.001) || (round > 0))
+        || ((width <= 1e-6) && ((least_now <= 0.001) || (rounds_before > 0))
         && ((room_of_trial <= 1e-6) || (side > 0))));
     double results_of_3[6] = {0.0};
     if (is_near) {
       const double arguments_of_3[] = {goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31,
-          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, round, side,
+          goal_r32, goal_r33, goal_x, goal_y, goal_z, reference_a1, reference_a2, rounds_before, side,
           start_ + real_of_direction*settled, wanted_elbow, wanted_shoulder};
       const softkin_status status_of_3 = find_joints_at(k, arguments_of_3, results_of_3, why);
       if (status_of_3 != SOFTKIN_OK) {
@@ -1604,7 +1604,7 @@ static softkin_status find_root(const void *machine, const double *given, double
         && ((!onward) || ((way_ahead > 1e-7) && (way_ahead < sum_in_end_of_way)));
     nearest_now = is_better ? way_ahead : nearest;
     goes_round = kept_an_angle_now && way_ends && (!onward) && (!turns_back) && (nearest_now >= 9.0)
-        && (round < 7);
+        && (rounds_before < 7);
     is_over = (passes_left <= 0) || (way_ends && (!goes_round) && (!turns_back));
     is_shortest = (stage == 1) && (trials >= 11);
     moved = fabs(met_from_q1 - q1) + fabs(met_from_q2 - q2) + fabs(met_from_q3 - q3) + fabs(met_from_q4 - q4)
@@ -1707,7 +1707,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     q6_next = is_near ? begun_q6 : (mirrors ? 2.0*met_from_q6 - q6 : moved_q6);
     met_from_q6_next = is_near ? begun_q6 : met_from_q6;
     kept_now_q6 = is_better ? q6 : kept_q6;
-    round_next = round + (goes_round ? 1 : 0);
+    rounds_before_next = rounds_before + (goes_round ? 1 : 0);
     if (is_over || (!looked_for)) {
       break;
     }
@@ -1758,7 +1758,7 @@ static softkin_status find_root(const void *machine, const double *given, double
     q6 = q6_next;
     met_from_q6 = met_from_q6_next;
     kept_q6 = kept_now_q6;
-    round = round_next;
+    rounds_before = rounds_before_next;
     kept_an_angle = kept_an_angle_now;
   }
   found[0] = nearest_now < 9.0;

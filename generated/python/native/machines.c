@@ -184,7 +184,7 @@ softkin_regular wrist3_regular;
 softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
-    {"ac6_rzryryrxryrz_j6offset 0df9c8a95b57fd41", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
+    {"ac6_rzryryrxryrz_j6offset 546408358f25b4d5", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
     {"ac6_threeparallel 8a07a3647a013fa0", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 5a4e37cb31d75fcd", &ac6_txtytzryrxrz_mechanism,

@@ -141,8 +141,7 @@ def inverse_all(
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
     of_slots = np.empty((count, width, min(table.count, size) + 8))
     of_signs = of_slots.reshape(*(2,) * robot.BRANCHES, *of_slots.shape[1:])
-    again = np.zeros(table.count, bool)
-    for rows, later in _then_those_that_wait(again, size):
+    for rows, later in _then_those_that_wait(table.count, size):
         with np.errstate(all="ignore"), waiting(later):
             poses = table.at(rows)
             found, status = programs.every_branch(
@@ -151,24 +150,23 @@ def inverse_all(
             status = _limited(robot, programs, found, _later(poses.refused, status))
         for i, value in enumerate(found):
             of_signs[..., i, : poses.count] = value
+        refused = status.reshape(count, poses.count) != Status.OK
+        of_slots.transpose(0, 2, 1)[:, : poses.count][refused] = np.nan
         axes[rows] = of_slots[:, :, : poses.count].transpose(2, 0, 1)
         statuses[rows] = status.reshape(count, poses.count).T
-    axes[statuses != Status.OK] = np.nan
     return axes, statuses
 
 
-def _then_those_that_wait(again: Mask, size: int) -> Iterator[tuple[Rows, list[NDArray[np.intp]] | None]]:
-    """All rows in pieces, each with a list for those that wait; then these together, which wait no longer.
-
-    again: false for every row.
-    """
-    for rows in _chunks(len(again), size):
+def _then_those_that_wait(count: int, size: int) -> Iterator[tuple[Rows, list[NDArray[np.intp]] | None]]:
+    """All rows in pieces, each with a list for those that wait; then these together, which wait no longer."""
+    waits: list[NDArray[np.intp]] = []
+    for rows in _chunks(count, size):
         later: list[NDArray[np.intp]] = []
         yield rows, later
-        for waiting_rows in later:
-            again[rows][waiting_rows] = True
-    if again.any():
-        yield from ((rows, None) for rows in _pieces(again, size))
+        waits += [rows.start + some for some in later]
+    if waits:
+        chosen = np.unique(np.concatenate(waits))
+        yield from ((chosen[piece], None) for piece in _chunks(len(chosen), size))
 
 
 def _rows_together(values: int, rows: int, slots: int, width: int) -> int:

@@ -133,7 +133,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     __slots__ = ("_constants",)
 
     NAME = "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"
-    KEY = "ac6_rzryryrxryrz_j6offset 0df9c8a95b57fd41"
+    KEY = "ac6_rzryryrxryrz_j6offset 546408358f25b4d5"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -1514,7 +1514,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_z,
             reference_a1,
             reference_a2,
-            round,
+            rounds_before,
             side,
             tried,
             wanted_elbow,
@@ -1531,7 +1531,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        product_in_cos_q1_tried = (1e-5 if round > 0 else 2e-12) * machine_scale
+        product_in_cos_q1_tried = (1e-5 if rounds_before > 0 else 2e-12) * machine_scale
         slope_wrist_x_tried = j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
         slope_distance_q1_tried = (
@@ -1556,7 +1556,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q1_tried - slope_distance_q1_tried * sin_q1_tried
             ) * one_by_distance_q1_tried
         else:
-            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * round
+            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * rounds_before
             cos_q1_tried = cos(sum_in_cos_q1_tried)
             sin_q1_tried = sin(sum_in_cos_q1_tried)
             slope_cos_q1_tried = 0.0
@@ -1677,7 +1677,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 slope_across_q2_tried - slope_length_q2_tried * sin_q2_tried
             ) * one_by_root_of_length_q2_tried
         else:
-            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * round
+            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * rounds_before
             cos_q2_tried = cos(sum_in_cos_q2_tried)
             sin_q2_tried = sin(sum_in_cos_q2_tried)
             slope_cos_q2_tried = 0.0
@@ -1756,7 +1756,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             goal_z,
             reference_a1,
             reference_a2,
-            round,
+            rounds_before,
             side,
             tried,
             wanted_elbow,
@@ -1773,7 +1773,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * j6_offset_x - d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        product_in_sin_q1_tried = (1e-5 if round > 0 else 2e-12) * machine_scale
+        product_in_sin_q1_tried = (1e-5 if rounds_before > 0 else 2e-12) * machine_scale
         # at a singularity: the angle of the reference
         if distance_q1_tried > product_in_sin_q1_tried:
             along_q1_tried = wanted_shoulder * wrist_x_tried  # rotation by q1 that points the arm at the point
@@ -1781,7 +1781,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             across_q1_tried = wanted_shoulder * wrist_y_tried
             sin_q1_tried = across_q1_tried / distance_q1_tried
         else:
-            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * round
+            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * rounds_before
             cos_q1_tried = cos(sum_in_sin_q1_tried)
             sin_q1_tried = sin(sum_in_sin_q1_tried)
         # coordinate of the point that the remaining links must reach
@@ -1824,7 +1824,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q2_tried = along_q2_tried / length_q2_tried
             sin_q2_tried = across_q2_tried / length_q2_tried
         else:
-            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * round
+            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * rounds_before
             cos_q2_tried = cos(sum_in_sin_q2_tried)
             sin_q2_tried = sin(sum_in_sin_q2_tried)
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
@@ -1948,7 +1948,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6,
             met_from_q6,
             kept_q6,
-            round,
+            rounds_before,
             kept_an_angle,
         ) = (
             0,
@@ -2053,7 +2053,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_z,
                         reference_a1,
                         reference_a2,
-                        round,
+                        rounds_before,
                         side,
                         start + at * real_of_direction,
                         wanted_elbow,
@@ -2118,7 +2118,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 ((not is_known) and (width > 1e-6))
                 or (
                     (width <= 1e-6)
-                    and ((least_now <= 0.001) or (round > 0))
+                    and ((least_now <= 0.001) or (rounds_before > 0))
                     and ((room_of_trial <= 1e-6) or (side > 0))
                 )
             )
@@ -2139,7 +2139,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                         goal_z,
                         reference_a1,
                         reference_a2,
-                        round,
+                        rounds_before,
                         side,
                         start + real_of_direction * settled_,
                         wanted_elbow,
@@ -2225,7 +2225,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 and (not onward)
                 and (not turns_back)
                 and (nearest_now >= 9.0)
-                and (round < 7)
+                and (rounds_before < 7)
             )
             is_over = (passes_left <= 0) or (way_ends and (not goes_round) and (not turns_back))
             is_shortest = (stage == 1) and (trials >= 11)
@@ -2429,7 +2429,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6_next = begun_q6 if is_near else (2.0 * met_from_q6 - q6 if mirrors else moved_q6)
             met_from_q6_next = begun_q6 if is_near else met_from_q6
             kept_now_q6 = q6 if is_better else kept_q6
-            round_next = round + (1 if goes_round else 0)
+            rounds_before_next = rounds_before + (1 if goes_round else 0)
             if is_over or (not looked_for):
                 break
             stage = next_stage
@@ -2479,7 +2479,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             q6 = q6_next
             met_from_q6 = met_from_q6_next
             kept_q6 = kept_now_q6
-            round = round_next
+            rounds_before = rounds_before_next
             kept_an_angle = kept_an_angle_now
         return (
             nearest_now < 9.0,

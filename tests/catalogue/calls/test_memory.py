@@ -20,7 +20,7 @@ SLOW = tuple(m.name for _, m in catalogue() if m.is_platform or m.search)
 
 def on_the_way(robot: Mechanism, poses: ArrayLike, rows: int) -> tuple[float, float]:
     """The bytes of the result, and those of everything else at the peak. poses: axis values, which are repeated."""
-    axes = np.reshape(poses, (-1, len(robot.AXES)))
+    axes = np.atleast_2d(poses)
     positions, rotations = (np.resize(part, (rows, *part.shape[1:])) for part in robot.forward_batch(axes)[:2])
     near = np.resize(axes, (rows, len(robot.AXES)))
     robot.inverse_all_batch(positions[:9], rotations[:9], near[:9])

@@ -178,7 +178,7 @@ def tried(
     """The trial and its guard at values of the last joint (radians), of one goal or of one for each."""
     names = [*"xyz", *(f"r{i + 1}{j + 1}" for i, j in product(range(3), repeat=2))]
     given: dict[str, float | Array] = {f"goal_{n}": v for n, v in zip(names, goals, strict=True)}
-    given |= {"reference_a1": 0.0, "reference_a2": 0.0, "tried": joint}
+    given |= {"reference_a1": 0.0, "reference_a2": 0.0, "rounds_before": 0, "tried": joint}
     given |= {"side": side, "wanted_elbow": 1.0, "wanted_shoulder": shoulder}
     values = tuple(given[name] for name in sorted(given))
     with np.errstate(all="ignore"):

@@ -15,7 +15,7 @@ from derive.ir.primitives import Select, ToReal
 from derive.ir.program import Let, Program
 from derive.ir.symbols import count, flag
 
-ROUND, KEEPS = count("round"), flag("keeps_an_angle")
+ROUND, KEEPS = count("rounds_before"), flag("keeps_an_angle")
 """How often the search went around before; whether an angle is nearly free in a trial."""
 GOES_ROUND = flag("goes_round")
 _KEPT, _KEPT_NOW = flag("kept_an_angle"), flag("kept_an_angle_now")

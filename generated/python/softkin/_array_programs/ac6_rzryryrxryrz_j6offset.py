@@ -1410,7 +1410,7 @@ class ArrayPrograms(Programs):
             goal_z,
             reference_a1,
             reference_a2,
-            round,
+            rounds_before,
             side,
             tried,
             wanted_elbow,
@@ -1424,7 +1424,7 @@ class ArrayPrograms(Programs):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        product_in_cos_q1_tried = select(round > 0, 1e-5, 2e-12) * k.machine_scale
+        product_in_cos_q1_tried = select(rounds_before > 0, 1e-5, 2e-12) * k.machine_scale
         slope_wrist_x_tried = k.j6_offset_x * (goal_r12 * cos_q6_tried + goal_r11 * sin_q6_tried)
         slope_wrist_y_tried = k.j6_offset_x * (goal_r22 * cos_q6_tried + goal_r21 * sin_q6_tried)
         slope_distance_q1_tried = select(
@@ -1434,8 +1434,8 @@ class ArrayPrograms(Programs):
             0.0,
         )
 
-        def elsewhere_cos_q1_tried(reference_a1: Real, round: Whole) -> Reals:
-            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * round
+        def elsewhere_cos_q1_tried(reference_a1: Real, rounds_before: Whole) -> Reals:
+            sum_in_cos_q1_tried = reference_a1 + 2.356194490192345 * rounds_before
             cos_q1_tried = cos(sum_in_cos_q1_tried)
             sin_q1_tried = sin(sum_in_cos_q1_tried)
             return (cos_q1_tried, sin_q1_tried, 0.0, 0.0)
@@ -1454,7 +1454,7 @@ class ArrayPrograms(Programs):
             distance_q1_tried > product_in_cos_q1_tried,
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1, round),
+            (reference_a1, rounds_before),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1530,8 +1530,8 @@ class ArrayPrograms(Programs):
         slope_cos_q3_tried = k.a3_by_length_26 * slope_cos_swing_q3_tried + k.d4_by_length_26 * slope_sin_swing_q3_tried
         slope_sin_q3_tried = k.a3_by_length_26 * slope_sin_swing_q3_tried - k.d4_by_length_26 * slope_cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(reference_a2: Real, round: Whole) -> Reals:
-            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * round
+        def elsewhere_cos_q2_tried(reference_a2: Real, rounds_before: Whole) -> Reals:
+            sum_in_cos_q2_tried = reference_a2 + 0.7853981633974483 * rounds_before
             cos_q2_tried = cos(sum_in_cos_q2_tried)
             sin_q2_tried = sin(sum_in_cos_q2_tried)
             return (cos_q2_tried, sin_q2_tried, 0.0, 0.0)
@@ -1580,7 +1580,7 @@ class ArrayPrograms(Programs):
             reach_tried > product_in_cos_q1_tried,
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (reference_a2, round),
+            (reference_a2, rounds_before),
         )
         sin_q23_tried = cos_q2_tried * sin_q3_tried + cos_q3_tried * sin_q2_tried
         cos_q23_tried = cos_q2_tried * cos_q3_tried - sin_q2_tried * sin_q3_tried
@@ -1658,7 +1658,7 @@ class ArrayPrograms(Programs):
             goal_z,
             reference_a1,
             reference_a2,
-            round,
+            rounds_before,
             side,
             tried,
             wanted_elbow,
@@ -1672,10 +1672,10 @@ class ArrayPrograms(Programs):
         wrist_y_tried = goal_y + (goal_r22 * sin_q6_tried - goal_r21 * cos_q6_tried) * k.j6_offset_x - k.d6 * goal_r23
         # distance of the point from the axis of q1
         distance_q1_tried = sqrt(wrist_x_tried * wrist_x_tried + wrist_y_tried * wrist_y_tried)
-        product_in_sin_q1_tried = select(round > 0, 1e-5, 2e-12) * k.machine_scale
+        product_in_sin_q1_tried = select(rounds_before > 0, 1e-5, 2e-12) * k.machine_scale
 
-        def elsewhere_cos_q1_tried(reference_a1: Real, round: Whole) -> Reals:
-            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * round
+        def elsewhere_cos_q1_tried(reference_a1: Real, rounds_before: Whole) -> Reals:
+            sum_in_sin_q1_tried = reference_a1 + 2.356194490192345 * rounds_before
             cos_q1_tried = cos(sum_in_sin_q1_tried)
             sin_q1_tried = sin(sum_in_sin_q1_tried)
             return (cos_q1_tried, sin_q1_tried)
@@ -1689,7 +1689,7 @@ class ArrayPrograms(Programs):
             distance_q1_tried > product_in_sin_q1_tried,
             (cos_q1_tried, sin_q1_tried),
             elsewhere_cos_q1_tried,
-            (reference_a1, round),
+            (reference_a1, rounds_before),
         )
         # coordinate of the point that the remaining links must reach
         wrist_x_from_q1_tried = wrist_x_tried * cos_q1_tried + wrist_y_tried * sin_q1_tried - k.a1
@@ -1715,8 +1715,8 @@ class ArrayPrograms(Programs):
         cos_q3_tried = k.a3_by_length_26 * cos_swing_q3_tried + k.d4_by_length_26 * sin_swing_q3_tried
         sin_q3_tried = k.a3_by_length_26 * sin_swing_q3_tried - k.d4_by_length_26 * cos_swing_q3_tried
 
-        def elsewhere_cos_q2_tried(reference_a2: Real, round: Whole) -> Reals:
-            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * round
+        def elsewhere_cos_q2_tried(reference_a2: Real, rounds_before: Whole) -> Reals:
+            sum_in_sin_q2_tried = reference_a2 + 0.7853981633974483 * rounds_before
             cos_q2_tried = cos(sum_in_sin_q2_tried)
             sin_q2_tried = sin(sum_in_sin_q2_tried)
             return (cos_q2_tried, sin_q2_tried)
@@ -1735,7 +1735,7 @@ class ArrayPrograms(Programs):
             reach_tried > product_in_sin_q1_tried,
             (cos_q2_tried, sin_q2_tried),
             elsewhere_cos_q2_tried,
-            (reference_a2, round),
+            (reference_a2, rounds_before),
         )
         r21_from_q1_tried = goal_r21 * cos_q1_tried - goal_r11 * sin_q1_tried
         r22_from_q1_tried = goal_r22 * cos_q1_tried - goal_r12 * sin_q1_tried
@@ -1858,7 +1858,7 @@ class ArrayPrograms(Programs):
             q6,
             met_from_q6,
             kept_q6,
-            round,
+            rounds_before,
             kept_an_angle,
         ) = initial(
             0,
@@ -1963,7 +1963,7 @@ class ArrayPrograms(Programs):
                     goal_z,
                     reference_a1,
                     reference_a2,
-                    round,
+                    rounds_before,
                     side,
                     start + at * real_of_direction,
                     wanted_elbow,
@@ -2017,7 +2017,11 @@ class ArrayPrograms(Programs):
             )
             is_near = is_settled & (
                 ((opposite(is_known)) & (width > 1e-6))
-                | ((width <= 1e-6) & ((least_now <= 0.001) | (round > 0)) & ((room_of_trial <= 1e-6) | (side > 0)))
+                | (
+                    (width <= 1e-6)
+                    & ((least_now <= 0.001) | (rounds_before > 0))
+                    & ((room_of_trial <= 1e-6) | (side > 0))
+                )
             )
             found = run_where(
                 is_near,
@@ -2037,7 +2041,7 @@ class ArrayPrograms(Programs):
                     goal_z,
                     reference_a1,
                     reference_a2,
-                    round,
+                    rounds_before,
                     side,
                     start + real_of_direction * settled_,
                     wanted_elbow,
@@ -2116,7 +2120,7 @@ class ArrayPrograms(Programs):
                 & (opposite(onward))
                 & (opposite(turns_back))
                 & (nearest_now >= 9.0)
-                & (round < 7)
+                & (rounds_before < 7)
             )
             is_over = (passes_left <= 0) | (way_ends & (opposite(goes_round)) & (opposite(turns_back)))
             is_shortest = (stage == 1) & (trials >= 11)
@@ -2317,7 +2321,7 @@ class ArrayPrograms(Programs):
             q6_next = select(is_near, begun_q6, select(mirrors, 2.0 * met_from_q6 - q6, moved_q6))
             met_from_q6_next = select(is_near, begun_q6, met_from_q6)
             kept_now_q6 = select(is_better, q6, kept_q6)
-            round_next = round + select(goes_round, 1, 0)
+            rounds_before_next = rounds_before + select(goes_round, 1, 0)
             done = is_over | (opposite(looked_for))
             if settled(done, status):
                 break
@@ -2369,7 +2373,7 @@ class ArrayPrograms(Programs):
                 q6,
                 met_from_q6,
                 kept_q6,
-                round,
+                rounds_before,
                 kept_an_angle,
             ) = advanced(
                 done,
@@ -2421,7 +2425,7 @@ class ArrayPrograms(Programs):
                     q6,
                     met_from_q6,
                     kept_q6,
-                    round,
+                    rounds_before,
                     kept_an_angle,
                 ),
                 (
@@ -2472,7 +2476,7 @@ class ArrayPrograms(Programs):
                     q6_next,
                     met_from_q6_next,
                     kept_now_q6,
-                    round_next,
+                    rounds_before_next,
                     kept_an_angle_now,
                 ),
             )
