@@ -107,11 +107,7 @@ def directive(kind: str, name: str) -> Iterator[str]:
 
 def overview(machines: dict[str, Mechanism]) -> Iterator[str]:
     """The machines by family, each with a small picture."""
-    yield from (
-        "# Machines",
-        "",
-        f"{len(machines)} machines, each with drawing, parameters, singularities and files.",
-    )
+    yield from ("# Machines", "", f"{len(machines)} machines, each with drawing, parameters, singularities and files.")
     families: dict[str, list[Mechanism]] = {}
     for machine in machines.values():
         families.setdefault(family_of(machine), []).append(machine)

@@ -82,10 +82,7 @@ SQUARES_WITH_LENGTHS = {
         "BoomTurn", Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4), FLAT, positive=(R,)
     ),
     "telescope that may turn inside out": _machine(
-        "BoomBoth",
-        Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4),
-        FLAT,
-        (branch("boom", R, ahead=+1, behind=-1),),
+        "BoomBoth", Rz(A1) * Ty(BESIDE) * Tx(R) * Rz(A2) * Tx(L4), FLAT, (branch("boom", R, ahead=+1, behind=-1),)
     ),
     "telescope above its shoulder": _machine(
         "BoomUp",
@@ -101,10 +98,7 @@ PARAMETERS_DECIDE = {
         "Skewed", Tx(X) * Rz(INCLINED) * Ty(Y) * Rz(-INCLINED) * Tz(Z), PLACE, offset_interface=True
     ),
     "rails in a wedge": _machine(
-        "Wedge",
-        Ry(INCLINED) * Tx(X) * Ry(-2 * INCLINED) * Tx(Z) * Ry(INCLINED) * Ty(Y),
-        PLACE,
-        joints=(X, Y, Z),
+        "Wedge", Ry(INCLINED) * Tx(X) * Ry(-2 * INCLINED) * Tx(Z) * Ry(INCLINED) * Ty(Y), PLACE, joints=(X, Y, Z)
     ),
 }
 
@@ -155,11 +149,7 @@ OTHERS = {
     ),
 }
 
-_ARM_AND_TELESCOPE = (
-    Rz(A1) * Tx(L1) * Rz(A2) * Tx(R),
-    FLAT,
-    (branch("arm", cos(A2), ahead=+1, behind=-1),),
-)
+_ARM_AND_TELESCOPE = (Rz(A1) * Tx(L1) * Rz(A2) * Tx(R), FLAT, (branch("arm", cos(A2), ahead=+1, behind=-1),))
 ALONG_A_DIRECTION = {
     "telescope in front of an arm": _machine("ArmTelescope", *_ARM_AND_TELESCOPE, positive=(R,)),
     "telescope in front of an arm that may turn inside out": _machine("ArmTelescopeBoth", *_ARM_AND_TELESCOPE),
@@ -202,10 +192,7 @@ DISTANCES_ALONE = {
         "RockerSlide",
         Rx(A1) * Ry(A2) * Tx(PIVOT_X) * Tz(BESIDE) * Ty(Y),
         PLACE,
-        (
-            branch("rocker", BESIDE * cos(A2) - PIVOT_X * sin(A2), ahead=+1, behind=-1),
-            LEFT,
-        ),
+        (branch("rocker", BESIDE * cos(A2) - PIVOT_X * sin(A2), ahead=+1, behind=-1), LEFT),
     ),
     "slide on a swivel": _machine("SwivelSlide", Rz(A1) * Tx(PIVOT_X) * Ty(Y), Task("xy"), (LEFT,)),
 }

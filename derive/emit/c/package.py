@@ -17,12 +17,7 @@ from derive.emit.c.every_branch import NAME as EVERY_BRANCH
 from derive.emit.c.functions import FRAME, function_name, functions, rotation_function
 from derive.emit.c.lanes import constants_of_lanes
 from derive.emit.c.printer import comment, laid_out, list_of, member, number, page, text
-from derive.emit.c.program import (
-    constants_read,
-    function_lines,
-    function_of,
-    setup,
-)
+from derive.emit.c.program import constants_read, function_lines, function_of, setup
 from derive.emit.interface import arguments_of, read_by, search_of
 from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
 from derive.kept import kept_by_identity

@@ -161,10 +161,7 @@ def _statements(both: Searched) -> tuple[list[Let], tuple[Statement, ...]]:
 
 
 def _trial(
-    both: Searched,
-    first: Sequence[Let],
-    signs: Mapping[sp.Symbol, sp.Expr],
-    solved: Sequence[Statement],
+    both: Searched, first: Sequence[Let], signs: Mapping[sp.Symbol, sp.Expr], solved: Sequence[Statement]
 ) -> Trial:
     derivation = both.trial.derivation
     left = Let(real("residual"), derivation.residuals[0])

@@ -34,15 +34,7 @@ from derive.kinematics.search.loop.near import IS_NEAR, near_name, near_program
 from derive.kinematics.search.loop.parts import look_program
 from derive.kinematics.search.loop.tried import try_program
 from derive.kinematics.search.margins import DETERMINANT, margins_wanted
-from derive.kinematics.search.programs import (
-    FOUND,
-    GOAL,
-    LOOKED_FOR,
-    START,
-    fits_program,
-    joints_program,
-    step_program,
-)
+from derive.kinematics.search.programs import FOUND, GOAL, LOOKED_FOR, START, fits_program, joints_program, step_program
 from derive.kinematics.search.wave import wave_program
 
 

@@ -10,24 +10,11 @@ import sympy as sp
 from derive.description.mechanism import Joint, Mechanism, Turning
 from derive.equations.axes import reference_value
 from derive.equations.named_pose import named_pose
-from derive.ir.constants import (
-    LEAST_DAMPING,
-    LONGEST_STEP,
-    NEARLY,
-    SHARE_OF_DAMPING,
-)
+from derive.ir.constants import LEAST_DAMPING, LONGEST_STEP, NEARLY, SHARE_OF_DAMPING
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, Root, Select, Wrap, larger
 from derive.ir.program import Call, Let, Output, Program, Solve, Statement, rewritten
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    ROTATION_ENTRIES,
-    SCALE,
-    cosine,
-    flag,
-    real,
-    sine,
-)
+from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, SCALE, cosine, flag, real, sine
 from derive.kinematics.differential import scaled_entries, solved_entries
 
 START = real("start")

@@ -10,17 +10,7 @@ from softkin import KinematicsError, Mechanism, Status
 from softkin._core import PITCH
 from softkin._start import IterativeForward
 
-from tests.catalogue.calls.mountings import (
-    BASE,
-    EVERY,
-    Axes,
-    frame_at,
-    limited,
-    machines,
-    mounted,
-    radian,
-    tool_of,
-)
+from tests.catalogue.calls.mountings import BASE, EVERY, Axes, frame_at, limited, machines, mounted, radian, tool_of
 from tests.catalogue.refusals import refusal
 
 pytestmark = pytest.mark.broad

@@ -88,12 +88,7 @@ IMPOSSIBLE = {
     "a dual SCARA too wide": ("Softkin_DualScara", TWO_ARMS, {"base_distance": 921.0}, "span base_distance"),
     "an arm 1 that stays away": ("Softkin_DualScara", TWO_ARMS, {"arm_length_1": 861.0}, "arm 2 must reach"),
     "an arm 2 that stays away": ("Softkin_DualScara", TWO_ARMS, {"rod_length_2": 801.0}, "arm 1 must reach"),
-    "two arms the same way": (
-        "Kin_Delta_P3C_Type3",
-        DELTA,
-        azimuths(0.0, 90.0, 90.0),
-        "azimuth",
-    ),
+    "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, azimuths(0.0, 90.0, 90.0), "azimuth"),
     "drives too far apart": ("Kin_Delta_P3C_Type3", DELTA, WIDE, "reach the plate"),
     "arms that meet two and two": ("Kin_Delta_P3C_Type3", DELTA, EVEN, "reach the plate"),
     "rods too short for the rails": ("Kin_Tripod_P3Z", RAILS, {"arm_length": 20.0}, "reach the plate"),

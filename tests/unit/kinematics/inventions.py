@@ -78,9 +78,7 @@ INVENTIONS = {
         periods=("A3", "A1", "A2"),
     ),
     "all turns clockwise": described(
-        chain=links(-A1, -A2, -A3),
-        task=Task("xy", FOLLOWED),
-        branches=(branch("elbow", -sin(A2), right=+1, left=-1),),
+        chain=links(-A1, -A2, -A3), task=Task("xy", FOLLOWED), branches=(branch("elbow", -sin(A2), right=+1, left=-1),)
     ),
     "a base that stands aside, looking elsewhere": described(
         joints=(A1, A2, P1, A3),
@@ -111,15 +109,9 @@ INVENTIONS = {
         task=Task("xyz"),
         positive=(RADIUS,),
     ),
-    "skewed belts": described(
-        chain=Tx((2 * P1 - P2) / 3) * Ty((P1 + P2) / 2) * Tz(P3 - P1 / 4),
-        task=Task("xyz"),
-    ),
+    "skewed belts": described(chain=Tx((2 * P1 - P2) / 3) * Ty((P1 + P2) / 2) * Tz(P3 - P1 / 4), task=Task("xyz")),
     "belts geared by parameters": described(
-        parameters=(L1, L2),
-        joints=(P1, P2),
-        closure=(X - L1 * P1 + L2 * P2, Y - L2 * P1 - L1 * P2),
-        task=Task("xy"),
+        parameters=(L1, L2), joints=(P1, P2), closure=(X - L1 * P1 + L2 * P2, Y - L2 * P1 - L1 * P2), task=Task("xy")
     ),
     "an oblique slide": described(chain=Tx(P1) * Rz(sp.pi / 3) * Tx(P2), task=Task("xy")),
     "clock angles": described(
@@ -135,9 +127,7 @@ INVENTIONS = {
         branches=(branch("elbow", sin(A2 - A1), right=+1, left=-1),),
     ),
     "a motor of either sense": described(
-        chain=Rz(DIRECTION * A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3),
-        task=Task("xy", FOLLOWED),
-        branches=(ELBOW,),
+        chain=Rz(DIRECTION * A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A3), task=Task("xy", FOLLOWED), branches=(ELBOW,)
     ),
     "a palletiser": described(
         parameters=(L1, L2),

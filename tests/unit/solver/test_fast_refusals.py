@@ -49,11 +49,7 @@ def arm(chain: Chain, joints: Sequence[Joint], turning: Turning = Turning.FULL) 
     used = {s for factor in chain.factors for s in factor.amount.free_symbols}
     parameters: tuple[Parameter, ...] = tuple(p for p in LENGTHS if p.symbol in used)
     return described(
-        parameters=parameters,
-        joints=tuple(joints),
-        chain=chain,
-        task=Task("xyz", turning),
-        offset_interface=False,
+        parameters=parameters, joints=tuple(joints), chain=chain, task=Task("xyz", turning), offset_interface=False
     )
 
 
