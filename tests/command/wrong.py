@@ -127,7 +127,7 @@ WRONG: dict[str, str] = {
         ("Rz(A2) * ", "Ry(A2) * "),
         ("Tz(HEIGHT + A3) * Rz(A4),", "Rx(A4) * Ty(80) * Tz(HEIGHT + A5) * Tx(30) * Ry(1),"),
         ("joints=(A1, A2, A3, A4)", "joints=(A3, A1, A2, A4, A5)"),
-        (", Turning.ABOUT_Z),", ", Turning.DIRECTION),"),
+        (", Turning.ABOUT_Z),", ", Turning.PITCH_ROLL),"),
         ('branches=(branch("elbow", sin(A2), right=+1, left=-1),),', ""),
     ),
     "with offset_interface=False it could be built, but for a point off the flange …": changed(
