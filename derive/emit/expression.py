@@ -207,8 +207,8 @@ class _Whole(ExpressionPrinter):
 
 
 def _is_whole(node: sp.Basic) -> bool:
-    """Whether an expression is a whole number because all names in it are."""
-    return bool(node.free_symbols) and all(map(is_count, node.free_symbols)) and not node.has(ToReal)
+    """Whether an expression is a whole number because all names and numbers in it are."""
+    return bool(node.free_symbols) and all(map(is_count, node.free_symbols)) and not node.has(ToReal, sp.Float)
 
 
 @cache

@@ -295,7 +295,7 @@ def test_a_mistake_in_a_formula_is_found(fault: str) -> None:
 
 def test_a_refusal_that_stays_away_is_found() -> None:
     """A tolerance of 2 instead of 1E-4: what is no rotation is accepted."""
-    shared, file = dict(shared_texts()), "Softkin_MakeRotation.st"
+    shared, file = dict(shared_texts()), "Softkin_RepairRotation.st"
     loose = shared[file].replace("<= 0.0001", "<= 2.0")
     assert loose != shared[file]
     library = compile_st({**shared, file: loose, **self_test(MECHANISM), file_of(MECHANISM): text_of(MECHANISM)})
