@@ -25,7 +25,7 @@ SAME = 1e-9
 _NEARLY = 1e-12
 """A share that differs less than this from a simple fraction is that fraction."""
 _SIMPLE = 1000
-_DIGITS, _STATED = 13, 12
+_DIGITS, _STATED = 14, 12
 """The decimal digits of a sum in oblique frames, relative to its terms: further ones are rounding. And those that a
 person states, at most.
 """

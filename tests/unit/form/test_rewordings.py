@@ -43,6 +43,12 @@ def other(mechanism: Mechanism, number: int) -> Mechanism:
     return replace(mechanism, chain=WAYS[number % len(WAYS)](mechanism, number))
 
 
+def rounded(chain: Chain | None) -> list[tuple[object, ...]]:
+    """The factors of a chain, with numbers to 11 digits: in oblique frames the 14th is rounding."""
+    assert chain is not None
+    return [(f.motion, f.axis, sp.expand(f.amount).evalf(11)) for f in chain.factors]
+
+
 @pytest.mark.parametrize("name", MACHINES)
 def test_other_words_have_the_same_form(name: str) -> None:
     mechanism, form = MACHINES[name], in_form(MACHINES[name])
@@ -54,8 +60,8 @@ def test_other_words_have_the_same_form(name: str) -> None:
         again = other(mechanism, number)
         assert frame(again.chain, values) == pytest.approx(stated, rel=1e-10, abs=1e-9), f"wording {number}"
         found = in_form(again)
-        assert in_words(found.chain) == in_words(form.chain), f"wording {number}: {in_words(again.chain)}"
-        assert replace(found, drawn=None) == replace(form, drawn=None), f"wording {number}"
+        assert rounded(found.chain) == rounded(form.chain), f"wording {number}: {in_words(again.chain)}"
+        assert replace(found, drawn=None, chain=form.chain) == replace(form, drawn=None), f"wording {number}"
 
 
 def operations(kin: Kinematics) -> int:
