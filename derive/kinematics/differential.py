@@ -290,9 +290,8 @@ def platform_velocities(
     rates = zip((*map(real, position), *rotation), (*twists[: len(position)], *turned), strict=True)
     moving = {name: rate for name, rate in rates if name.is_Symbol}
     joints = [j.symbol for j in mechanism.joints]
-    for (
-        rod
-    ) in mechanism.holding_rods:  # its length is what its joint says: it is never too short at a pose that was found
+    # The length of a rod is what its joint says: it is never too short at a pose that was found.
+    for rod in mechanism.holding_rods:
         (changed,) = sp.Matrix([with_fixed_names(mechanism, rod.length)]).jacobian(joints) * speeds
         moving |= {leg_symbol("divisor", rod): changed} if changed != 0 else {}
     missed, lets = misses_of(mechanism, sp.Matrix(twists), speeds)

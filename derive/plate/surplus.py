@@ -180,27 +180,20 @@ def _lines(mechanism: Mechanism, at: Mapping[str, Array]) -> list[tuple[Array, s
     """Of every leg its line at a pose, by what the platform moves, and the symbols that its length reads. Turns count
     by the largest distance of a joint of the platform.
     """
-    turning = mechanism.is_platform
-    axes = ("xyz" if len(mechanism.rods[0].plate) == 3 else "z") if turning else ""
-    legs = [(rod.plate, rod.base, rod.length) for rod in mechanism.rods]
-    found = []
-    for plate, base, length in legs:
-        span = np.array([float(evaluate(p - b, at)) for p, b in zip(plate, base, strict=True)])
-        by = [sp.Matrix([sp.diff(p, real(c)) for p in plate]) for c in mechanism.motion.position]
-        by += [sp.Matrix([turned_rate(p, axis) for p in plate]) for axis in axes]
+    axes = rotation_axes(mechanism) if mechanism.is_platform else ()
+    spans = (tuple(p - b for p, b in zip(rod.plate, rod.base, strict=True)) for rod in mechanism.rods)
+    legs = [(rod.plate, span, rod.length) for rod, span in zip(mechanism.rods, spans, strict=True)]
+    legs += [(plane.plate, plane.normal, plane.offset) for plane in mechanism.guides]
+    found, width, size = [], len(mechanism.motion.position), 0.0
+    for plate, along, length in legs:
+        span = np.array([float(evaluate(v, at)) for v in along])
+        by = [[sp.diff(p, real(c)) for p in plate] for c in mechanism.motion.position]
+        by += [[turned_rate(p, axis) for p in plate] for axis in axes]
         slopes = np.array([[float(evaluate(v, at)) for v in column] for column in by])
-        row = slopes @ span / (float(np.linalg.norm(span)) or 1.0)
-        found.append((row, length.free_symbols, slopes))
-    for plane in mechanism.guides:
-        normal = np.array([float(evaluate(v, at)) for v in plane.normal])
-        by = [sp.Matrix([sp.diff(p, real(c)) for p in plane.plate]) for c in mechanism.motion.position]
-        by += [sp.Matrix([turned_rate(p, axis) for p in plane.plate]) for axis in axes]
-        slopes = np.array([[float(evaluate(v, at)) for v in column] for column in by])
-        found.append((slopes @ normal, plane.offset.free_symbols, slopes))
-    width = len(mechanism.motion.position)
-    size = max((float(np.max(np.abs(s[width:]), initial=0.0)) for _, _, s in found), default=1.0) or 1.0
-    scale = np.array([1.0] * width + [size] * len(axes))
-    return [(row / scale, read) for row, read, _ in found]
+        size = max(size, float(np.max(np.abs(slopes[width:]), initial=0.0)))
+        found.append((slopes @ span / (float(np.linalg.norm(span)) or 1.0), length.free_symbols))
+    scale = np.array([1.0] * width + [size or 1.0] * len(axes))
+    return [(row / scale, read) for row, read in found]
 
 
 def turned_rate(value: sp.Expr, axis: str) -> sp.Expr:

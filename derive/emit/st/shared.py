@@ -31,8 +31,6 @@ _OWN_AXES = "axes["
 """How the spelling of a constant begins that a structure of an axis holds."""
 _MOST_OUTPUTS = 12
 """The most results that are outputs of their own: more than a position and a rotation stand in a structure."""
-
-
 _ROTATION = frozenset(r.name for r in ROTATION_ENTRIES)
 
 

@@ -100,10 +100,8 @@ def _derived(mechanism: Mechanism) -> Assembly:
     if lower == 0:
         named = assembly(_NAME, held.det(), margin=margin, **_with_first({"positive": +1, "negative": -1}, nominal))
         return replace(named, meanings=meanings if named.signs[0] > 0 else (meanings[1], meanings[0]))
-    names = {
-        "below": lower,
-        "above": -lower,
-    }  # the tool hangs from arms, carriages and cables, and stands on other legs
+    names = {"below": lower, "above": -lower}
+    # The tool hangs from arms, carriages and cables, and stands on other legs.
     hangs = all(rod.only_pulls for rod in mechanism.holding_rods)
     if not hangs and not is_driven(mechanism, [v for rod in mechanism.holding_rods for v in rod.base]):
         names = dict(reversed(names.items()))

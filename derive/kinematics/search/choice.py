@@ -33,6 +33,7 @@ from derive.kinematics.search.tool_turn import TOOL_TURN, with_tool_turn
 from derive.kinematics.search.wave import wave_program
 from derive.kinematics.shared_names import refuse_shared_names
 from derive.solver.solve import MOST_TERMS
+from derive.solver.subproblems.two_slides import leaves_two_slides
 from derive.solver.unsolved import Undetermined, Unsolved, with_advice
 from derive.work import TooMuchWork, at_most
 
@@ -164,9 +165,11 @@ def _may_be_solved(mechanism: Mechanism, known: Joint) -> bool:
     turns, and two slides are left.
     """
     closure = closure_at(mechanism, known)
-    unknown = [j.symbol for j in mechanism.solved_joints if j != known]
-    if sum(not j.is_angle for j in mechanism.solved_joints) == 2 == len(unknown) - 3 and len(closure.turns) > 3:
+    moving = [j for j in mechanism.solved_joints if j != known]
+    turning = sum(j.is_angle for j in moving)
+    if closure.turns and leaves_two_slides(turning, len(moving) - turning):
         return True
+    unknown = [j.symbol for j in moving]
     read = [names_in(e.expression) for e in closure.equations]
     present = [u for u in unknown if any(names & {u, cosine(u), sine(u)} for names in read)]
     are_parallel = any(len(turn.amount.free_symbols & set(unknown)) > 2 for turn in closure.turns)

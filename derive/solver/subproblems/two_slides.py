@@ -25,8 +25,13 @@ def rotation_gives_turns(problem: Problem) -> bool:
     """Whether a trial has three unknown turns, and two slides that the positions read with them."""
     present = {u for e in problem.equations for u in problem.unknowns_of(e.expression)}
     is_whole = bool(problem.turns) and len(problem.columns) == 3 and not problem.followed
-    counted = (len(problem.angles), len(problem.lengths), len(problem.equations)) == (3, 2, 3)
+    counted = leaves_two_slides(len(problem.angles), len(problem.lengths)) and len(problem.equations) == 3
     return problem.is_overdetermined and is_whole and counted and len(present) > len(problem.equations)
+
+
+def leaves_two_slides(angles: int, lengths: int) -> bool:
+    """Whether so many unknown turns may follow from a rotation, and so many unknown slides from a position then."""
+    return (angles, lengths) == (3, 2)
 
 
 def of_turns(problem: Problem) -> Problem:

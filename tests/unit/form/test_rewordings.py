@@ -1,7 +1,8 @@
 """Every chain in two of three other wordings of its own: in frames that are moved and turned, in link frames at any
 place, by tables.
 
-Their form is the same, so what is derived of them is the same: solutions, operations, time, and why it is refused.
+Their form is the same, numbers to 11 digits, so what is derived of them is the same: solutions, operations, time, and
+why it is refused.
 What is derived of some is measured against the first wording all the same.
 """
 
