@@ -64,7 +64,7 @@ def test_a_search_and_its_loop_count_and_ask() -> None:
     assert is_condition(search.outputs[0].value)
     assert all(is_count(s) for s in search.inputs if s.name.startswith("wanted_"))
     (loop,) = (s for s in search.body if isinstance(s, Iterate))
-    assert {"stage", "direction", "side", "round", "trials", "passes_left"} <= {
+    assert {"stage", "direction", "side", "rounds_before", "trials", "passes_left"} <= {
         s.name for s in loop.state if is_count(s)
     }
     assert [s.name for s in loop.state if isinstance(s, Flag)] == ["is_newton", "was_mirrored", "kept_an_angle"]
