@@ -235,6 +235,11 @@ class Program:
         steps = (s.step if isinstance(s, Iterate) else (s,) for s in self.body)
         return tuple(s for step in steps for s in step if isinstance(s, Call))
 
+    @property
+    def is_search(self) -> bool:
+        """Whether a loop calls programs."""
+        return any(isinstance(part, Call) for s in self.body if isinstance(s, Iterate) for part in s.step)
+
     def bound(self) -> tuple[sp.Symbol, ...]:
         """Every name that a statement binds, in order."""
         return tuple(name for s in self.body for name in s.bound())

@@ -27,7 +27,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
 CALLED = frozenset(ArrayPrinter.function(KEYS[one]) for one in FUNCTIONS) | {
-    "DEGREE", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require", "run_where",
+    "DEGREE", "FEW_SEARCHES", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require",
     "settled", "solve", "sqrt",
 }  # fmt: skip
 """The functions that programs on arrays call."""

@@ -32,7 +32,9 @@ def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
     head = f"{FOUND} = self.{call.program.name}({_values(call, printer)}, {inner})"
     if call.is_conditional:
         wanted, program = printer.print(call.wanted), f"self.{call.program.name}"
-        head = f"{FOUND} = run_where({wanted}, {program}, {_values(call, printer)}, {inner}, {_nothing(call)})"
+        few = ", FEW_SEARCHES" if call.program.is_search else ""
+        given = f"{wanted}, {program}, {_values(call, printer)}, {inner}, {_nothing(call)}{few}"
+        head = f"{FOUND} = self.run_where({given})"
     if call.refusal is None:
         return [*_note(call), head, *_taken(call, FOUND)]
     refused = f"require(status, refused == status, Status.{call.refusal[0].name})"

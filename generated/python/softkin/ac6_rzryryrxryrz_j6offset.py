@@ -3682,4 +3682,4 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """The programs on arrays."""
         from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

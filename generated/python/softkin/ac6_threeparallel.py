@@ -1571,4 +1571,4 @@ class Ac6ThreeParallel(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.ac6_threeparallel import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

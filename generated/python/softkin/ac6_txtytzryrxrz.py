@@ -573,4 +573,4 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.ac6_txtytzryrxrz import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

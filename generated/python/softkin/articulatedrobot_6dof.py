@@ -1693,4 +1693,4 @@ class ArticulatedRobot6DOF(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.articulatedrobot_6dof import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

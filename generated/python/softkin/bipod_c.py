@@ -949,4 +949,4 @@ class BipodC(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.bipod_c import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -839,4 +839,4 @@ class BipodRotary(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.bipod_rotary import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

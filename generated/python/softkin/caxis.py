@@ -270,4 +270,4 @@ class CAxis(OrientationKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.caxis import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -336,4 +336,4 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.caxis_tool import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -487,4 +487,4 @@ class Crane(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.crane import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

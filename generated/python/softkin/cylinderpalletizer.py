@@ -1640,4 +1640,4 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.cylinderpalletizer import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1583,4 +1583,4 @@ class DeltaC(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.delta_c import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1804,4 +1804,4 @@ class DeltaP3CType3(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.delta_p3c_type3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1073,4 +1073,4 @@ class DualScara(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.dualscara import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -2355,4 +2355,4 @@ class Excavator(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.excavator import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -262,4 +262,4 @@ class Gantry2(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.gantry2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

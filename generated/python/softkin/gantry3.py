@@ -269,4 +269,4 @@ class Gantry3(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.gantry3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -360,4 +360,4 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.gantrycutter2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

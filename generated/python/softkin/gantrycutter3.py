@@ -376,4 +376,4 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.gantrycutter3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -571,4 +571,4 @@ class HeadHeadCB(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.headhead_cb import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -591,4 +591,4 @@ class HeadTableAC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.headtable_ac import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

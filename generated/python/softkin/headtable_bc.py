@@ -592,4 +592,4 @@ class HeadTableBC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.headtable_bc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

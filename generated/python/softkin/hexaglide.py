@@ -2724,4 +2724,4 @@ class Hexaglide(IterativeForward):
         """The programs on arrays."""
         from softkin._array_programs.hexaglide import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

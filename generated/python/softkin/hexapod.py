@@ -2389,4 +2389,4 @@ class Hexapod(IterativeForward):
         """The programs on arrays."""
         from softkin._array_programs.hexapod import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

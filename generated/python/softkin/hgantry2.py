@@ -309,4 +309,4 @@ class HGantry2(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.hgantry2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

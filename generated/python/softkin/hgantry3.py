@@ -315,4 +315,4 @@ class HGantry3(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.hgantry3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

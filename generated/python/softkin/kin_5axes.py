@@ -567,4 +567,4 @@ class Kin5Axes(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.kin_5axes import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1246,4 +1246,4 @@ class KinType12XY(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.mc_kin_type_12_xy import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

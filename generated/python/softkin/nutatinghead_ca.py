@@ -825,4 +825,4 @@ class NutatingHeadCA(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.nutatinghead_ca import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -825,4 +825,4 @@ class NutatingHeadCB(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.nutatinghead_cb import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

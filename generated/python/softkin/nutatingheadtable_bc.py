@@ -828,4 +828,4 @@ class NutatingHeadTableBC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.nutatingheadtable_bc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

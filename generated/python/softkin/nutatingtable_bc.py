@@ -920,4 +920,4 @@ class NutatingTableBC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.nutatingtable_bc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -839,4 +839,4 @@ class P2CType1(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.p2c_type1 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

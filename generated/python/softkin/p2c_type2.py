@@ -841,4 +841,4 @@ class P2CType2(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.p2c_type2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -710,4 +710,4 @@ class P2XType1(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.p2x_type1 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

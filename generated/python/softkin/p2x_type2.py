@@ -470,4 +470,4 @@ class P2XType2(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.p2x_type2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

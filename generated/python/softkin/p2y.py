@@ -308,4 +308,4 @@ class P2Y(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.p2y import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

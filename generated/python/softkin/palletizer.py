@@ -1211,4 +1211,4 @@ class Palletizer(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.palletizer import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

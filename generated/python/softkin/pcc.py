@@ -507,4 +507,4 @@ class PCC(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.pcc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

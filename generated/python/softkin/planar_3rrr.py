@@ -1410,4 +1410,4 @@ class Planar3RRR(IterativeForward, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.planar_3rrr import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

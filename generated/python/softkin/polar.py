@@ -330,4 +330,4 @@ class Polar(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.polar import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

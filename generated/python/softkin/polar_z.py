@@ -347,4 +347,4 @@ class PolarZ(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.polar_z import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

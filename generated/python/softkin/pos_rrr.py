@@ -1382,4 +1382,4 @@ class PosRRR(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.pos_rrr import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1947,4 +1947,4 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.rodpalletizer import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -3012,4 +3012,4 @@ class RodWrist(IterativeForward):
         """The programs on arrays."""
         from softkin._array_programs.rodwrist import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -464,4 +464,4 @@ class Scara2Z(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.scara2_z import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

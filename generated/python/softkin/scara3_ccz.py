@@ -469,4 +469,4 @@ class Scara3CCZ(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.scara3_ccz import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -471,4 +471,4 @@ class Scara3Z(TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scara3_z import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

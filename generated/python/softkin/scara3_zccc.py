@@ -579,4 +579,4 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scara3_zccc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

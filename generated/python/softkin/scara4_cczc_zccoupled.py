@@ -634,4 +634,4 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scara4_cczc_zccoupled import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

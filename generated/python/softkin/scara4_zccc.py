@@ -579,4 +579,4 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scara4_zccc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

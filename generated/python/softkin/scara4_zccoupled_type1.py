@@ -555,4 +555,4 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scara4_zccoupled_type1 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

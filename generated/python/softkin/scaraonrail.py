@@ -570,4 +570,4 @@ class ScaraOnRail(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scaraonrail import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -725,4 +725,4 @@ class SCCC(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.sccc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

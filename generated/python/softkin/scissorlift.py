@@ -452,4 +452,4 @@ class ScissorLift(OffsetKinematics, TwistChoice):
         """The programs on arrays."""
         from softkin._array_programs.scissorlift import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -291,4 +291,4 @@ class SkewGantry3(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.skewgantry3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -643,4 +643,4 @@ class TableTableAC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.tabletable_ac import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

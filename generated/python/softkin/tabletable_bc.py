@@ -638,4 +638,4 @@ class TableTableBC(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.tabletable_bc import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

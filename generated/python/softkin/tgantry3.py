@@ -315,4 +315,4 @@ class TGantry3(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tgantry3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

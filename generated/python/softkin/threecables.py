@@ -938,4 +938,4 @@ class ThreeCables(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.threecables import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -217,4 +217,4 @@ class Tool(OrientationKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tool import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

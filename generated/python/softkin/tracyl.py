@@ -301,4 +301,4 @@ class Tracyl(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tracyl import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

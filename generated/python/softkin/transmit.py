@@ -354,4 +354,4 @@ class Transmit(Mechanism):
         """The programs on arrays."""
         from softkin._array_programs.transmit import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1397,4 +1397,4 @@ class TripodLinear(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tripod_linear import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1066,4 +1066,4 @@ class TripodP3Z(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tripod_p3z import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -1727,4 +1727,4 @@ class TripodRotary(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tripod_rotary import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

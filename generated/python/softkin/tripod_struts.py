@@ -938,4 +938,4 @@ class TripodStruts(OffsetKinematics):
         """The programs on arrays."""
         from softkin._array_programs.tripod_struts import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -529,4 +529,4 @@ class Wrist2(OrientationKinematics):
         """The programs on arrays."""
         from softkin._array_programs.wrist2 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

@@ -478,4 +478,4 @@ class Wrist3(OrientationKinematics):
         """The programs on arrays."""
         from softkin._array_programs.wrist3 import ArrayPrograms
 
-        return ArrayPrograms(self._constants)
+        return ArrayPrograms(self._constants, self)

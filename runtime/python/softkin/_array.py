@@ -33,6 +33,10 @@ Truth: TypeAlias = NDArray[np.bool_] | bool
 Codes: TypeAlias = NDArray[np.uint8]
 """A `Status` for every row."""
 
+FEW = 64
+"""So many calls on plain numbers take as long as a call on arrays."""
+FEW_SEARCHES = 512
+"""The same for a program whose loops call programs: on arrays it goes on until the slowest row is done."""
 _TURN = 2.0 * np.pi
 _HALF_AND_EDGE = 180.0 + EDGE
 _BOTH_SIGNS = np.array([1, -1])
@@ -46,9 +50,11 @@ class Programs(ABC):
     JACOBIAN_ROWS: ClassVar[tuple[int, ...]]
     """The rows of the twist that the Jacobian has, where it has no program of its own."""
 
-    def __init__(self, constants: Any) -> None:
-        """constants: those of the machine for which the programs compute."""
-        self.constants = constants
+    def __init__(self, constants: Any, machine: object = None) -> None:
+        """constants: those of the machine for which the programs compute. machine: what has the programs on plain
+        numbers for the same constants; None where rows have constants of their own.
+        """
+        self.constants, self.machine = constants, machine
 
     def at(self, rows: slice) -> Programs:
         """The programs of some rows."""
@@ -63,6 +69,33 @@ class Programs(ABC):
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, on their turns; limits are not tested."""
+
+    def run_where(
+        self,
+        wanted: Truth,
+        program: Callable[[Values, Codes], Values],
+        given: Values,
+        status: Codes,
+        nothing: tuple[float, ...],
+        few: int = FEW,
+    ) -> Values:
+        """The results of a shared program in the rows where it is wanted; `nothing` in all other rows. Few rows are
+        computed one after the other on plain numbers.
+        """
+        shape, found = status.shape, tuple(np.full(status.shape, value) for value in nothing)
+        rows = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == Status.OK))
+        if (waits := _WAITS.get()) is not None and 0 < len(rows) * _SHARE < status.size:
+            waits.append(rows % shape[-1])
+        elif len(rows):
+            own = tuple(np.broadcast_to(value, shape).ravel()[rows] for value in given)
+            codes: Codes = np.zeros(len(rows), np.uint8)
+            on_numbers = getattr(self.machine, f"_{program.__name__}", None) if len(rows) <= few else None
+            with waiting(None):
+                results = _one_by_one(on_numbers, own, codes, nothing) if on_numbers else program(own, codes)
+            for column, values in zip(found, results, strict=True):
+                column.reshape(-1)[rows] = values
+            status.reshape(-1)[rows] = codes
+        return found
 
     def every_branch(
         self, position: Vector, rotation: Rotation, branches: int, turns: Turns, reference: Reals
@@ -212,7 +245,7 @@ def advanced(done: Truth, state: Reals, following: Reals) -> Values:
 
 
 _WAITS: ContextVar[list[NDArray[np.intp]] | None] = ContextVar("waits", default=None)
-_FEW = 64
+_SHARE = 64
 """Rows wait where they are fewer than this share of all: a shared program takes as long for one row as for many."""
 
 
@@ -228,23 +261,17 @@ def waiting(rows: list[NDArray[np.intp]] | None) -> Iterator[None]:
         _WAITS.reset(before)
 
 
-def run_where(
-    wanted: Truth, program: Callable[[Values, Codes], Values], given: Values, status: Codes, nothing: tuple[float, ...]
+def _one_by_one(
+    program: Callable[[Values], Values | Status], given: Values, status: Codes, nothing: tuple[float, ...]
 ) -> Values:
-    """The results of a shared program in the rows where it is wanted; `nothing` in all other rows."""
-    shape, found = status.shape, tuple(np.full(status.shape, value) for value in nothing)
-    rows = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == Status.OK))
-    if (waits := _WAITS.get()) is not None and 0 < len(rows) * _FEW < status.size:
-        waits.append(rows % shape[-1])
-    elif len(rows):
-        own = tuple(np.broadcast_to(value, shape).ravel()[rows] for value in given)
-        codes: Codes = np.zeros(len(rows), np.uint8)
-        with waiting(None):
-            results = program(own, codes)
-        for column, values in zip(found, results, strict=True):
-            column.reshape(-1)[rows] = values
-        status.reshape(-1)[rows] = codes
-    return found
+    """The results of a shared program that runs on plain numbers for one row after the other."""
+    results = []
+    for row, values in enumerate(zip(*[value.tolist() for value in given], strict=True)):
+        found = program(values)
+        if isinstance(found, Status):
+            status[row], found = found, nothing
+        results.append(found)
+    return tuple(np.array(results).T)
 
 
 def sin(x: Real) -> Real:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from softkin._array import (
     DEGREE,
+    FEW_SEARCHES,
     Programs,
     absolute,
     advanced,
@@ -20,7 +21,6 @@ from softkin._array import (
     reasonable,
     require,
     root,
-    run_where,
     select,
     settled,
     sin,
@@ -652,7 +652,7 @@ class ArrayPrograms(Programs):
                     (moved_q1, moved_q2, moved_q3, moved_q4, moved_q5, moved_q6, error, newton_next),
                 )
             )
-        found = run_where(
+        found = self.run_where(
             (error <= 1e-11) & (way_from_reference <= 0.1),
             self.is_on_branch,
             (
@@ -1913,7 +1913,7 @@ class ArrayPrograms(Programs):
         )
         for _ in range(4001):
             place_plus_width = place + width
-            found = run_where(
+            found = self.run_where(
                 stage == 0,
                 self.look_at_wave,
                 (
@@ -1945,7 +1945,7 @@ class ArrayPrograms(Programs):
             )
             is_rounding, safe_step = found
             real_of_direction = direction
-            found = run_where(
+            found = self.run_where(
                 (stage == 1) | (stage == 2),
                 self.try_joint,
                 (
@@ -2023,7 +2023,7 @@ class ArrayPrograms(Programs):
                     & ((room_of_trial <= 1e-6) | (side > 0))
                 )
             )
-            found = run_where(
+            found = self.run_where(
                 is_near,
                 self.joints_at,
                 (
@@ -2051,7 +2051,7 @@ class ArrayPrograms(Programs):
                 (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             )
             begun_q1, begun_q2, begun_q3, begun_q4, begun_q5, begun_q6 = found
-            found = run_where(
+            found = self.run_where(
                 stage == 3,
                 self.step_on_closure,
                 (
@@ -2085,7 +2085,7 @@ class ArrayPrograms(Programs):
                 | ((error <= 1e-11) & ((steps_left <= 0) | (2.0 * error > error_before)))
             )
             meets_pose = steps_end & (error <= 1e-11)
-            found = run_where(
+            found = self.run_where(
                 meets_pose,
                 self.is_on_branch,
                 (q1, q2, q3, q4, q5, wanted_crossing, wanted_elbow, wanted_shoulder, wanted_wrist),
@@ -2683,7 +2683,7 @@ class ArrayPrograms(Programs):
         # without an offset, only the first branch of the crossing has a solution
         require(status, k.searched | (sigma_crossing > 0), Status.UNREACHABLE)
         # the solution next to the reference
-        found = run_where(
+        found = self.run_where(
             k.searched,
             self.meet_from_reference,
             (
@@ -2712,9 +2712,10 @@ class ArrayPrograms(Programs):
             ),
             status,
             (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            FEW_SEARCHES,
         )
         is_near_reference, followed_q1, followed_q2, followed_q3, followed_q4, followed_q5, followed_q6 = found
-        found = run_where(
+        found = self.run_where(
             k.searched & (opposite(is_near_reference)),
             self.compute_wave,
             (r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, k.searched),
@@ -2743,7 +2744,7 @@ class ArrayPrograms(Programs):
             bound_of_fifth,
         ) = found
         # root search along A6
-        found = run_where(
+        found = self.run_where(
             k.searched & (opposite(is_near_reference)),
             self.find_root,
             (
@@ -2790,6 +2791,7 @@ class ArrayPrograms(Programs):
             ),
             status,
             (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+            FEW_SEARCHES,
         )
         found_, _, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         q1: Real

@@ -21,7 +21,6 @@ from softkin._array import (
     reasonable,
     require,
     root,
-    run_where,
     select,
     settled,
     sin,
@@ -829,7 +828,7 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         require(status, lost_digits_q3 | (absolute(cos_q3) <= k.bound_of_cos_q3), Status.UNREACHABLE)
         # if digits were lost, steps on the closure meet the pose
-        found = run_where(
+        found = self.run_where(
             lost_digits_q2 | lost_digits_q3,
             self.meet_pose,
             (

@@ -19,7 +19,6 @@ from softkin._array import (
     reasonable,
     require,
     root,
-    run_where,
     select,
     settled,
     sin,
@@ -346,7 +345,7 @@ class ArrayPrograms(StartedPrograms):
         require(status, k.assembly_sign * determinant >= k.min_type2_margin, Status.UNREACHABLE)
         # pose of the platform, by Newton's method from the home pose
         refused = status.copy()
-        found = run_where(
+        found = self.run_where(
             k.check_forward,
             self.find_platform,
             (axis_a1, axis_a2, axis_a3, k.cos_home_heading_2, k.sin_home_heading_2, k.home_x, k.home_y),
