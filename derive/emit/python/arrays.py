@@ -27,8 +27,8 @@ from derive.kinematics.kinematics import Kinematics
 from derive.lowering.passes import ARRAYS, NOTHING, UNCONVERTED, applied
 
 CALLED = frozenset(ArrayPrinter.function(KEYS[one]) for one in FUNCTIONS) | {
-    "DEGREE", "FEW_SEARCHES", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable", "require",
-    "settled", "solve", "sqrt",
+    "DEGREE", "FEW_SEARCHES", "advanced", "degrees", "elsewhere", "initial", "opposite", "passed", "reasonable",
+    "require", "settled", "solve", "sqrt",
 }  # fmt: skip
 """The functions that programs on arrays call."""
 TYPES = frozenset((

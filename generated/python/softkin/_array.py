@@ -52,8 +52,8 @@ class Programs(ABC):
     """The rows of the twist that the Jacobian has, where it has no program of its own."""
 
     def __init__(self, constants: Any, machine: object = None) -> None:
-        """constants: those of the machine for which the programs compute. machine: what has the programs on plain numbers
-        for the same constants; None where rows have constants of their own.
+        """constants: those of the machine for which the programs compute. machine: what has the programs on plain
+        numbers for the same constants; None where rows have constants of their own.
         """
         self.constants, self.machine = constants, machine
 
