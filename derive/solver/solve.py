@@ -91,6 +91,8 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     free_of_lengths,
     positions_from_flange,
 )
+_SLIDES_LEFT = (_stated, positions, *(tier for tier in TIERS[1:] if tier is not positions))
+"""With every angle known, a known frame is asked first: in that of the slides an equation has one of them alone."""
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 MOST_TERMS = 100_000
 """The work of one derivation, in terms (`derive.work`): some seconds."""
@@ -209,7 +211,8 @@ def _next(
             return problem, binding, sums
     found = _of_a_trial(problem)
     if found is None:
-        found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+        tiers = TIERS if problem.angles or problem.pending else _SLIDES_LEFT
+        found = _best(candidate for tier in tiers for candidate in [_candidates(problem, tier(problem))])
     if found is not None and not found.yields_to_a_sum:
         return problem, _with_one_root(problem, found), sums
     for total in candidate_sums(problem, arguments):
