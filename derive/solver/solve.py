@@ -91,8 +91,6 @@ TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (
     free_of_lengths,
     positions_from_flange,
 )
-_SLIDES_LEFT = (_stated, positions, *(tier for tier in TIERS[1:] if tier is not positions))
-"""With every angle known, a known frame is asked first: in that of the slides an equation has one of them alone."""
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 MOST_TERMS = 100_000
 """The work of one derivation, in terms (`derive.work`): some seconds."""
@@ -209,10 +207,9 @@ def _next(
         binding = resolve(problem, total) if total.replaced in problem.pending else None
         if binding is not None:
             return problem, binding, sums
-    found = _of_a_trial(problem)
+    found, seen = _of_a_trial(problem), _seen_from_slides(problem)
     if found is None:
-        tiers = TIERS if problem.angles or problem.pending else _SLIDES_LEFT
-        found = _best(candidate for tier in tiers for candidate in [_candidates(problem, tier(problem))])
+        found = _best(candidate for tier in TIERS for candidate in [_candidates(seen, tier(seen))])
     if found is not None and not found.yields_to_a_sum:
         return problem, _with_one_root(problem, found), sums
     for total in candidate_sums(problem, arguments):
@@ -224,10 +221,19 @@ def _next(
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
     if found is None and not problem.is_overdetermined:
-        found = _best(last_resort(problem) for last_resort in _LAST)
+        found = _best(last_resort(seen) for last_resort in _LAST)
     if found is not None:
         return problem, _with_one_root(problem, found), sums
     raise Unsolved(unsolved(problem))
+
+
+def _seen_from_slides(problem: Problem) -> Problem:
+    """The problem; with every angle known, its positions seen in the known frame in front of the slides: an equation
+    there has often one of them alone, and is always shorter.
+    """
+    if problem.angles or problem.pending:
+        return problem
+    return replace(problem, equations=positions(problem) or problem.equations)
 
 
 def _of_a_trial(problem: Problem) -> Binding | None:
