@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
+from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import Branch, DescriptionError, Mechanism, Rod, Turning
 from derive.equations.closures.fixed_names import all_angles, fixed_angles, signs_of, with_fixed_names
 from derive.ir.constants import DEGREE, SHORTEST_LINK, SINGULAR
@@ -34,6 +35,7 @@ from derive.plate.cones import cone_axes, cone_checks, cone_constants
 from derive.plate.legs import (
     MARGIN,
     RADIUS,
+    arm_names,
     by_angles,
     divisor,
     home_angles,
@@ -93,7 +95,7 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
     return (
         *trigonometric,
         *(Let(n, v) for n, v in entries),
-        *(let for leg in legs_of(mechanism) for let in turned(home, point_of(leg), names("home_arm", leg))),
+        *(let for leg in legs_of(mechanism) for let in turned(home, point_of(leg), arm_names("home_arm", leg))),
         *_platform_radius(mechanism),
         *_lengths_at_home(mechanism),
     )
@@ -110,7 +112,7 @@ def check_home(mechanism: Mechanism) -> None:
     if mechanism.motion.turning is Turning.DIRECTION:
         raise DescriptionError(
             "a loop may turn its platform about z, or about every axis: it commands a direction only where guides hold "
-            "what is not commanded"
+            "what is not commanded, or no rod feels a turn about it"
         )
     if mechanism.offset_interface:
         raise DescriptionError(
@@ -120,6 +122,12 @@ def check_home(mechanism: Mechanism) -> None:
         raise DescriptionError("a loop that turns its platform needs no assembly: its home pose tells the mode")
     count = len(mechanism.motion.position) + len(rotation_axes(mechanism))
     legs = legs_of(mechanism)
+    for one in mechanism.rods:
+        if one.ring is not None and (is_driven(mechanism, one.base) or FREE_TWIST not in mechanism.guides):
+            raise DescriptionError(
+                f"rod {one.name!r}: a rod that ends on a ring begins at a fixed point, and its platform is commanded a "
+                "direction, about which no rod feels a turn"
+            )
     if len(mechanism.fixed_guides) != len(mechanism.passive):
         raise DescriptionError(
             f"the platform moves {count} quantities, and the task commands all{_but(mechanism.passive)}: as many "
@@ -138,7 +146,7 @@ def check_home(mechanism: Mechanism) -> None:
             raise DescriptionError(
                 f"{what} {leg.name!r}: {end} must be a point of the plate, which no joint moves on it"
             )
-    for plane in mechanism.guides:
+    for plane in (g for g in mechanism.guides if not g.turns_along):
         if strange := {s for v in plane.normal for s in v.free_symbols} - {p.symbol for p in mechanism.parameters}:
             raise DescriptionError(
                 f"guide {plane.name!r}: its normal reads {min(map(str, strange))!r}, and is made of parameters alone"
@@ -218,7 +226,7 @@ def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 def _span_at_home(mechanism: Mechanism, rod: Rod) -> tuple[Let, ...]:
     base = [at_home_joints(mechanism, v) for v in rod.base]
-    return span(rod, home_position(mechanism), names("home_arm", rod), base, vector_word(mechanism, rod))
+    return span(mechanism, rod, (home_position(mechanism), home_rotation(mechanism)), base, "home_arm")
 
 
 def at_home_joints(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
@@ -235,7 +243,8 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         row(mechanism, rod, names("home_arm", rod), leg_symbol("length", rod), vector_word(mechanism, rod))
         for rod in mechanism.holding_rods
     )
-    planes = (plane_row(mechanism, plane, names("home_arm", plane), plane.normal) for plane in mechanism.guides)
+    home = home_rotation(mechanism)
+    planes = (plane_row(mechanism, p, names("home_arm", p), home, named=False) for p in mechanism.guides)
     return (
         *(let for lets in (*lines, *planes) for let in lets),
         *cone_axes(mechanism, home_rotation(mechanism)),
@@ -294,15 +303,15 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
             for v in rod.base
         ]
         vectors = (
-            *turned(rotation_of(mechanism), point_of(rod), arm),
-            *span(rod, position_of(mechanism), arm, base, word),
+            *turned(rotation_of(mechanism), point_of(rod), arm_names("arm", rod)),
+            *span(mechanism, rod, (position_of(mechanism), rotation_of(mechanism)), base),
             *span_moment(mechanism, rod, arm, word),
         )
         lets += [let for let in vectors if let.name not in bound]
         lets += [divisor(rod, rod.length)] if is_driven(mechanism, [rod.length]) else []
     for plane in mechanism.guides:
-        arm = names("arm", plane)
-        vectors = (*turned(rotation_of(mechanism), point_of(plane), arm), *plane_row(mechanism, plane, arm))
+        arm, rotation = names("arm", plane), rotation_of(mechanism)
+        vectors = (*turned(rotation, point_of(plane), arm), *plane_row(mechanism, plane, arm, rotation))
         lets += [let for let in vectors if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     lengths = sp.Mul(
@@ -312,7 +321,8 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     words = [vector_word(mechanism, rod) for rod in mechanism.holding_rods]
     return (
         *lets,
-        *(_long_enough(rod) for rod in mechanism.holding_rods if is_driven(mechanism, [rod.length])),
+        *(_beyond(rod, rod.length) for rod in mechanism.holding_rods if is_driven(mechanism, [rod.length])),
+        *(_beyond(rod, real(f"off_axis_{rod.name}")) for rod in mechanism.holding_rods if rod.ring is not None),
         *cone_checks(mechanism),
         Solve((), rows(mechanism, words), (), of_spans, "determinant of the spans of the legs and their moments"),
         Let(
@@ -324,7 +334,8 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     )
 
 
-def _long_enough(rod: Rod) -> Require:
+def _beyond(rod: Rod, length: sp.Expr) -> Require:
+    """The condition that a rod has a length, or that its base is off the axis of its ring."""
     return Require(
-        sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
+        sp.Gt(length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
     )

@@ -16,6 +16,7 @@ from derive.description.mechanism import (
     length,
     linear,
     on_plate,
+    ring_rod,
     rod,
     rotary,
 )
@@ -61,6 +62,7 @@ _FIVE = ((-418.0, 325.0, -185.0), (418.0, 325.0, -160.0), (-418.0, -325.0, -68.0
          (0.0, -493.0, -14.0))  # fmt: skip
 """Of each strut x and y of its joint on the base, and where it ends on the spindle."""
 STRUTS = tuple(linear(f"L{k}", f"Strut {k}", domain=(0.0, 1e9)) for k in range(1, 6))
+RING = length("ring_radius", "Radius of the rings", nominal=80.0)
 FRAME = length("frame_height", "Height of the joints on the base", nominal=900.0)
 
 GUIDED: Mapping[str, Mechanism] = {
@@ -119,6 +121,17 @@ GUIDED: Mapping[str, Mechanism] = {
         ),
         guides=(guide("twist", (0, 1, 0), tuple(ROTATION * Matrix([100, 0, 0]))),),
         positive=STRUTS,
+        home=(0, 0, 400, 0, 0, 0),
+    ),
+    "pentapod, whose struts end on rings around the spindle": Mechanism(
+        name="Kin_RingPod",
+        joints=STRUTS,
+        parameters=(FRAME, RING),
+        task=Task("xyz", Turning.DIRECTION),
+        rods=tuple(
+            ring_rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), RING, s)
+            for s, (x, y, z) in zip(STRUTS, _FIVE, strict=True)
+        ),
         home=(0, 0, 400, 0, 0, 0),
     ),
     "plate on two cylinders along a skewed guide": Mechanism(
