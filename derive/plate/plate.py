@@ -64,16 +64,16 @@ _HELD = "a home pose at which the legs hold the platform"
 
 
 def machine_statements(mechanism: Mechanism, at_home: Sequence[Statement] = ()) -> tuple[Statement, ...]:
-    """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode
-    at the home pose.
+    """The statements of parameters alone: home rotation and arms, scales, assembly mode at the home pose.
 
     at_home: the statements that bind the joints at the home pose, `home_cos_a1`, where joints move ends of rods.
     """
-    later = (rod for rod in mechanism.holding_rods if is_driven(mechanism, rod.base))
+    later = [rod for rod in mechanism.holding_rods if is_driven(mechanism, rod.base)]
     return (
         *platform_size(mechanism),
         *at_home,
         *(let for rod in later for let in _span_at_home(mechanism, rod)),
+        *(length(rod, vector_word(mechanism, rod)) for rod in later if is_driven(mechanism, [rod.length])),
         *_mode_at_home(mechanism),
         *modes_at_home(mechanism, pose_at_home(mechanism)),
     )
@@ -209,19 +209,30 @@ def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
 
 
 def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The lengths of the legs at the home pose: where one is a joint, it follows from the pose."""
+    """The lengths of the legs at the home pose: where one is a joint, it follows from the pose. If joints move its base
+    as well, they are zero for this.
+    """
     rods = mechanism.holding_rods
     fixed = [rod for rod in rods if not is_driven(mechanism, rod.base)]
-    measured = [rod for rod in fixed if is_driven(mechanism, [rod.length])]
-    lengths = tuple(leg_symbol("length", rod) for rod in rods)
+    measured = [rod for rod in rods if is_driven(mechanism, [rod.length])]
+    lengths = tuple(leg_symbol("length" if r in fixed or r not in measured else "rest_length", r) for r in rods)
     shortest = SHORTEST_LINK * SCALE
     apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
     return (
         *(let for rod in fixed for let in _span_at_home(mechanism, rod)),
-        *(length(rod) if rod in measured else Let(leg_symbol("length", rod), rod.length) for rod in rods),
+        *(_at_rest(mechanism, r, n) if r in measured else Let(n, r.length) for r, n in zip(rods, lengths, strict=True)),
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "characteristic length: mean leg, radius of the platform"),
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
     )
+
+
+def _at_rest(mechanism: Mechanism, rod: Rod, name: sp.Symbol) -> Let:
+    """The length of a leg at the home pose, with the joints that move its base at zero."""
+    if not is_driven(mechanism, rod.base):
+        return length(rod)
+    base = (v.xreplace({j.symbol: sp.Integer(0) for j in mechanism.joints}) for v in rod.base)
+    ends = zip(home_position(mechanism), names("home_arm", rod), base, strict=False)
+    return Let(name, Root(sp.Add(*[(p + a - b) ** 2 for p, a, b in ends])))
 
 
 def _span_at_home(mechanism: Mechanism, rod: Rod) -> tuple[Let, ...]:
@@ -289,9 +300,7 @@ def _start(mechanism: Mechanism) -> Iterator[Output]:
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The checks of a solved inverse: legs with a length, the assembly mode of the machine, a distance from the
-    singularity.
-    """
+    """The checks of a solved inverse: legs with a length, the machine's assembly mode, no singularity."""
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
     for rod in mechanism.holding_rods:

@@ -33,8 +33,8 @@ SOLUTIONS = {
     "Z3 head with slides": 4,
     "head in metres whose planes form a T, stated as equations": 4,
     "3-RRR on a lift": 7,
-    "pentapod, whose struts end on the spindle and do not feel its twist": 1,
-    "pentapod, whose struts end on rings around the spindle": 1,
+    "tripod whose planes form a T, over a table with two slides": 1,
+    "pentapod, whose struts end on the spindle and on rings around it": 1,
     "plate on two cylinders along a skewed guide": 1,
 }
 """The most solutions in the assembly mode of the machine, at the poses where the witness counts them."""

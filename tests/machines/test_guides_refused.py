@@ -11,7 +11,8 @@ from derive.description.validate import validate
 from derive.kinematics.build import build
 from tests.machines.guided import GUIDED
 
-RPS, RINGS = (GUIDED[n] for n in ("3-RPS on a raised base", "pentapod, whose struts end on rings around the spindle"))
+RPS = GUIDED["3-RPS on a raised base"]
+RINGS = GUIDED["pentapod, whose struts end on the spindle and on rings around it"]
 
 
 def test_the_steps_for_what_is_not_commanded_are_explained() -> None:
@@ -43,7 +44,13 @@ WRONG = {
     "a home pose of the task alone": (replace(RPS, home=(450, 0, 0)), "needs a home pose of 6 coordinates, and has 3"),
     "no guides": (replace(RPS, guides=()), "must be held by guides=, planes in which points of a platform that turns"),
     "a ring whose rod begins at a slide": (
-        replace(RINGS, rods=(replace(RINGS.rods[0], base=(0, RINGS.joints[0].symbol, 900)), *RINGS.rods[1:])),
+        replace(
+            RINGS,
+            rods=(
+                replace(RINGS.rods[0], base=(sp.Integer(0), RINGS.joints[0].symbol, sp.Integer(900))),
+                *RINGS.rods[1:],
+            ),
+        ),
         "rod '1': a rod that ends on a ring begins at a fixed point, and its platform is commanded a direction",
     ),
     "a ring beside a rod that feels the twist": (
