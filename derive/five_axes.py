@@ -64,8 +64,9 @@ def five_axes(
 
     `table="AC"` is a table C on a trunnion A, `head="CB"` a head B on a fork C. If it is `nutating`, the trunnion, or
     the axis of the head next to the tool, is inclined to Z by a parameter. With `location_errors` each turning axis has
-    parameters for the errors of its place and its direction, against what carries it, with the names of ISO 230-7.
-    `fields` are further fields of the `Mechanism`. Raises `DescriptionError` for any other order.
+    parameters for the errors of its place and its direction, against what carries it, with the names of ISO 230-7,
+    and the slides Y and Z have those of their squareness. `fields` are further fields of the `Mechanism`. Raises
+    `DescriptionError` for any other order.
     """
     if (head, table) not in ORDERS.values():
         known = ", ".join(f"head={h!r} table={t!r}" for h, t in ORDERS.values())
@@ -81,14 +82,18 @@ def five_axes(
         for letter in head + table
     }
     offsets = {p.name: p for p in _offsets(head, table)}
-    slides = _slides(head, table)
-    chain = _to_workpiece(table, axes, offsets) * Tx(slides[0]) * Ty(slides[1]) * Tz(slides[2])
+    slides, squareness = _slides(head, table), _squareness() if location_errors else {}
+    chain = _to_workpiece(table, axes, offsets) * Tx(slides[0])
+    for letter, slide in zip("BC", slides[1:], strict=True):
+        tilts = _product(_TURN[other](radians(tilt)) for other, tilt in squareness.get(letter, {}).items())
+        chain *= tilts * _SHIFT[letter](slide) * _back(tilts)
     chain *= _to_tool(head, axes, offsets)
     tilt = (sp.sin if outer == "C" else sp.cos)(axes[inner].joint)
     if location_errors:
         tilt = _tilt(head, table, chain, axes)
     pole = f"tool_along_{outer.lower()}" + ("_or_farthest" if nutating else "")
-    errors = (p for axis in axes.values() for p in (*axis.places.values(), *axis.tilts.values()))
+    errors = [p for tilts in squareness.values() for p in tilts.values()]
+    errors += [p for axis in axes.values() for p in (*axis.places.values(), *axis.tilts.values())]
     described = {
         "summary": _summary(head, table, nutating),
         "source": f"five-axis milling machines, {_where(head, table)}; axes as ISO 841 names them",
@@ -156,11 +161,25 @@ def _tilt(head: str, table: str, chain: Chain, axes: dict[str, _Axis]) -> sp.Exp
 def _errors(letter: str) -> tuple[dict[str, Parameter], dict[str, Parameter]]:
     """The errors of the location of an axis, of its place and of its direction, by the letters of the other two."""
     others, axis = [a for a in "ABC" if a != letter], letter.lower()
-    place, tilt = f"Error of the place of axis {letter} along", f"Error of the direction of axis {letter}: turn about"
+    place = f"Error of the place of axis {letter} along"
     return (
         {a: distance(f"e{_LINE[a].lower()}0{axis}", f"{place} {_LINE[a]}", nominal=0.02) for a in others},
-        {a: angle(f"e{a.lower()}0{axis}", f"{tilt} {_LINE[a]}", nominal=0.0, default=0.0) for a in others},
+        {a: _tilt_error(a, letter, "axis") for a in others},
     )
+
+
+def _squareness() -> dict[str, dict[str, Parameter]]:
+    """The errors of the squareness of the slides Y (to X) and Z (to X and Y), by the letters of the lines."""
+    return {
+        letter: {a: _tilt_error(a, _LINE[letter], "slide") for a in others}
+        for letter, others in (("B", "C"), ("C", "BA"))
+    }
+
+
+def _tilt_error(about: str, name: str, kind: str) -> Parameter:
+    """The error of the direction of an axis or a slide, as a turn about a line."""
+    meaning = f"Error of the direction of {kind} {name}: turn about {_LINE[about]}"
+    return angle(f"e{about.lower()}0{name.lower()}", meaning, nominal=0.0, default=0.0)
 
 
 def _pivot(letter: str) -> str:

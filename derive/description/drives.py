@@ -72,6 +72,7 @@ def with_loops(
         return joints
     _refuse(joints, drives)
     known = {j.symbol: _nominal(j) for j in joints} | {d.joint.symbol: _nominal(d.joint) for d in drives}
+    moving = {*known}
     known |= {p.symbol: sp.Float(p.nominal) for p in parameters}
     following = {d.by.symbol: d for d in drives}
     found = []
@@ -79,7 +80,7 @@ def with_loops(
         way: list[Drive] = []
         while (drive := following.get((way[-1].joint if way else joint).symbol)) is not None and drive not in way:
             way.append(drive)
-        loops = tuple(_loop(drive, known, joint) for drive in way)
+        loops = tuple(_loop(drive, known, moving, joint) for drive in way)
         symbol = way[-1].joint.symbol if way else joint.symbol
         found.append(replace(joint, symbol=symbol, loops=loops, multi_turn=joint.multi_turn and not loops))
     return tuple(found)
@@ -111,8 +112,11 @@ def _number(value: sp.Expr, known: _Nominal) -> float:
     return float(evaluate(value.xreplace(known), {}))
 
 
-def _loop(drive: Drive, known: _Nominal, actuator: Joint) -> Loop:
-    """The loop of a drive, with the sides of its nominal values; the actuator's own symbol is that of its motor."""
+def _loop(drive: Drive, known: _Nominal, moving: set[sp.Symbol], actuator: Joint) -> Loop:
+    """The loop of a drive, with the sides of its nominal values; the actuator's own symbol is that of its motor.
+
+    moving: the symbols of all joints.
+    """
     table, name, ends = {actuator.symbol: actuator.motor}, drive.joint.name, (drive.start, drive.tip)
     turns, sides = (drive.joint.is_angle, drive.by.is_angle), (drive.side, drive.by_side)
     plain = Loop(drive.joint.symbol, drive.by.symbol, turns, sides, *ends, drive.length, name)
@@ -124,14 +128,18 @@ def _loop(drive: Drive, known: _Nominal, actuator: Joint) -> Loop:
         raise DescriptionError(
             f"the loop of joint {name!r} reads {unknown[0]!r}, which is not a joint or a parameter of this mechanism"
         )
+    if others := sorted(s.name for s in (read & moving) - {plain.moved, plain.by}):
+        raise DescriptionError(
+            f"the loop of joint {name!r} reads {others[0]!r}: only {name!r} and {drive.by.name!r} may move its ends"
+        )
     _refuse_open(drive, plain, known)
     signs = [np.sign(_number(sp.diff(plain.equation, s), known)) for s in (plain.moved, plain.by)]
     if 0.0 in signs:
         raise DescriptionError(f"the loop of joint {name!r} is at a dead point with nominal values")
-    moved, moving = (int(sign) * stated for sign, stated in zip(signs, sides, strict=True))
+    moved, motor = (int(sign) * stated for sign, stated in zip(signs, sides, strict=True))
     start, tip = (Chain(tuple(replace(f, amount=f.amount.xreplace(table)) for f in end.factors)) for end in ends)
     by = table.get(plain.by, plain.by)
-    return replace(plain, by=by, sides=(moved, moving), start=start, tip=tip, length=plain.length.xreplace(table))
+    return replace(plain, by=by, sides=(moved, motor), start=start, tip=tip, length=plain.length.xreplace(table))
 
 
 def _refuse_open(drive: Drive, loop: Loop, known: _Nominal) -> None:

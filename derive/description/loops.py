@@ -35,6 +35,8 @@ class Rod:
     """The largest angle between the rod and that direction at its joint on the plate (radians)."""
     only_pulls: bool = False
     """Whether it is a cable: see `Mechanism.load`."""
+    ring: sp.Expr | None = None
+    """The radius of a ring on which it ends: see `ring_rod`. `plate` is then the centre of the ring."""
 
     @property
     def key(self) -> str:
@@ -43,8 +45,17 @@ class Rod:
 
     @property
     def equation(self) -> sp.Expr:
-        """|plate - base|^2 - length^2."""
-        return sp.Add(*[(p - b) ** 2 for p, b in zip(self.plate, self.base, strict=True)]) - self.length**2
+        """|end - base|^2 - length^2."""
+        return sp.Add(*[(p - b) ** 2 for p, b in zip(self.end, self.base, strict=True)]) - self.length**2
+
+    @property
+    def end(self) -> tuple[sp.Expr, ...]:
+        """Its end on the plate; on a ring the point that is nearest to its base."""
+        if self.ring is None:
+            return self.plate
+        axis, between = ROTATION[:, 2], sp.Matrix(self.plate) - sp.Matrix(self.base)
+        across = between - between.dot(axis) * axis
+        return tuple(sp.Matrix(self.plate) - self.ring / sp.sqrt(across.dot(across)) * across)
 
 
 @dataclass(frozen=True)
@@ -58,6 +69,11 @@ class Plane:
     offset: sp.Expr
 
     @property
+    def turns_along(self) -> bool:
+        """Whether its normal turns with the plate: it holds nothing, see `FREE_TWIST`."""
+        return self == FREE_TWIST
+
+    @property
     def key(self) -> str:
         """Its name in programs, which differs from those of the rods."""
         return f"guide_{self.name}"
@@ -66,6 +82,11 @@ class Plane:
     def equation(self) -> sp.Expr:
         """normal . point - offset."""
         return sp.Add(*[n * p for n, p in zip(self.normal, self.plate, strict=True)]) - self.offset
+
+
+FREE_TWIST = Plane("free_twist", tuple(ROTATION[:, 1]), tuple(ROTATION[:, 0]), sp.Integer(0))
+"""The twist of a platform whose legs do not feel it: the x axis of the plate is always at right angles to its y axis.
+Its row in the matrix of the legs is a turn about the z axis of the plate."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +130,14 @@ def rod(
 def cable(name: str, anchor: Sequence[object], plate: Sequence[object], length: object) -> Rod:
     """A rod that only pulls: where `Mechanism.load` would make it push, the inverse refuses the pose."""
     return replace(rod(name, anchor, plate, length), only_pulls=True)
+
+
+def ring_rod(name: str, base: Sequence[object], centre: Sequence[object], radius: object, length: object) -> Rod:
+    """A rod that ends on a ring, which turns freely about the z axis of the plate: `ring_rod("1", BASE, on_plate(0, 0,
+    HEIGHT), RADIUS, L1)`. The rod stays in a plane with that axis, so it does not feel a turn about it. A negative
+    radius is that of a rod which passes the axis, and ends behind it.
+    """
+    return replace(rod(name, base, centre, length), ring=sp.sympify(radius))
 
 
 def surplus_notes(names: Sequence[str]) -> tuple[str, ...]:

@@ -38,6 +38,7 @@ from derive.description.errors import DescriptionError
 from derive.description.fields import as_stated, expressions
 from derive.description.joints import Interval, Joint, Kind, arc, driving, helical, linear, rotary
 from derive.description.loops import (
+    FREE_TWIST,
     ROTATION,
     Bound,
     Limited,
@@ -51,6 +52,7 @@ from derive.description.loops import (
     guide,
     limited,
     on_plate,
+    ring_rod,
     rod,
     surplus_notes,
 )
@@ -66,8 +68,8 @@ __all__ = [
     "DescriptionError", "Drive", "Interval", "Joint", "Kind", "Limited", "Mechanism", "Parameter", "Plane", "Rod",
     "Search", "Role", "Task", "Turning", "Vendor", "X", "Y", "Z", "angle", "arc", "assembly", "bound", "branch",
     "cable", "crossing", "coordinate", "coupling", "distance", "driven", "driving", "flag", "gear", "guide", "helical",
-    "length", "limited", "linear", "on_plate", "optional_length", "pitch", "radians", "rod", "rotary", "search",
-    "sign", "signed_length", "transmission",
+    "length", "limited", "linear", "on_plate", "optional_length", "pitch", "radians", "ring_rod", "rod", "rotary",
+    "search", "sign", "signed_length", "transmission",
 ]  # fmt: skip
 
 
@@ -206,8 +208,7 @@ class Mechanism:
     @property
     def held_joints(self) -> tuple[Joint, ...]:
         """The joints that stay at the reference, in the order of the axes."""
-        names = {joint.name for joint in self.held}
-        return tuple(j for j in self.joints if j.name in names)
+        return tuple(j for j in self.joints if j.name in {joint.name for joint in self.held})
 
     @property
     def solved_joints(self) -> tuple[Joint, ...]:
@@ -262,15 +263,14 @@ class Mechanism:
     def fixed_guides(self) -> tuple[Plane, ...]:
         """The planes that no joint shifts: each fixes a coordinate that the task does not command."""
         joints = {j.symbol for j in self.joints}
-        return tuple(g for g in self.guides if not g.equation.free_symbols & joints)
+        return tuple(g for g in self.guides if not g.turns_along and not g.equation.free_symbols & joints)
 
     @property
     def motion(self) -> Task:
         """The coordinates in which the platform of a loop moves: those of the task, and those that planes fix."""
-        if not self.fixed_guides:
+        if not self.fixed_guides and FREE_TWIST not in self.guides:
             return self.task
-        ends = (*(rod.plate for rod in self.rods), *(plane.plate for plane in self.guides))
-        is_flat = all(len(end) == 2 for end in ends)
+        is_flat = all(len(end) == 2 for end in (*[r.plate for r in self.rods], *[g.plate for g in self.guides]))
         turning = Turning.ABOUT_Z if self.task.turning is Turning.ABOUT_Z else Turning.FULL
         return Task(COORDINATE_NAMES_OF_A_PLANE if is_flat else "".join(COORDINATE_NAMES), turning)
 
@@ -278,7 +278,9 @@ class Mechanism:
     def passive(self) -> tuple[str, ...]:
         """The motions of the loop that the task does not command: coordinates, and the twist about the tool."""
         own = tuple(c for c in self.motion.position if c not in self.task.position)
-        return (*own, "twist") if self.motion.turning is not self.task.turning else own
+        return (
+            (*own, "twist") if self.motion.turning is not self.task.turning and FREE_TWIST not in self.guides else own
+        )
 
     @property
     def is_turning_loop(self) -> bool:

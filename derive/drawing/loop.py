@@ -8,7 +8,7 @@ length.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import sympy as sp
@@ -31,7 +31,7 @@ Entries = tuple[sp.Expr, ...]
 
 def bars_of(mechanism: Mechanism) -> tuple[Rod, ...]:
     """The bars that are drawn: those of the description, else its rods."""
-    return mechanism.bars or mechanism.rods
+    return mechanism.bars or tuple(replace(r, plate=r.end, ring=None) if r.ring else r for r in mechanism.rods)
 
 
 @kept_by_identity(10)

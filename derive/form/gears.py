@@ -33,22 +33,24 @@ def with_gears(mechanism: Mechanism) -> Mechanism:
     """
     symbols = tuple(j.symbol for j in mechanism.joints)
     arguments = _arguments(mechanism)
-    turned = {s for argument in arguments for s in argument.free_symbols}
-    driving = {j.symbol for j in mechanism.joints if j.kind is Kind.ROTARY and not j.loops and j.symbol not in turned}
     forms = tuple(dict.fromkeys(f for a in arguments if (f := _form(a, symbols)) is not None))
     angles = tuple(s for s in symbols if any(f.has(s) for f in forms))
-    is_plain = not forms or _is_plain(mechanism, forms, angles)
-    if is_plain and not driving:
-        return _checked(mechanism)
+    if forms and not _is_plain(mechanism, forms, angles):
+        rows = [[f.coeff(a) for a in angles] for f in forms]
+        basis = _triangular(_basis(rows, len(angles)))
+        mechanism = _replaced(mechanism, angles, sp.Matrix(basis))
+    return _checked(_with_driving(mechanism))
+
+
+def _with_driving(mechanism: Mechanism) -> Mechanism:
+    """The mechanism, in which a turning motor that moves lengths alone is such a one."""
+    turned = {s for argument in _arguments(mechanism) for s in argument.free_symbols}
+    turning = [j for j in mechanism.joints if j.kind in (Kind.ROTARY, Kind.GEARED) and not j.loops]
+    driving = {j.symbol for j in turning if j.symbol not in turned}
     joints = tuple(
         replace(j, kind=Kind.DRIVING, multi_turn=False) if j.symbol in driving else j for j in mechanism.joints
     )
-    mechanism = replace(mechanism, joints=joints, periods=_periods(mechanism, driving))
-    if is_plain:
-        return _checked(mechanism)
-    rows = [[f.coeff(a) for a in angles] for f in forms]
-    basis = _triangular(_basis(rows, len(angles)))
-    return _checked(_replaced(mechanism, angles, sp.Matrix(basis)))
+    return replace(mechanism, joints=joints, periods=_periods(mechanism, driving)) if driving else mechanism
 
 
 def _periods(mechanism: Mechanism, driving: set[sp.Symbol]) -> tuple[str, ...] | None:
@@ -145,6 +147,10 @@ def _triangular(basis: list[list[sp.Expr]]) -> list[list[sp.Expr]]:
     """The rows in an order in which row k ends at motor k. Raises `DescriptionError` if there is no such order."""
     count = len(basis[0])
     ends = [max(k for k, c in enumerate(row) if c != 0) for row in basis]
+    if len({*ends}) == len(basis):  # motors that share a turn, but only shift by themselves
+        others = [k for k in range(count) if k not in ends]
+        basis = [*basis, *([sp.Integer(k == j) for j in range(count)] for k in others)]
+        ends = [*ends, *others]
     if sorted(ends) != list(range(count)):
         raise DescriptionError(
             f"{len(basis)} turns of the chain share {count} motors so that none follows from the ones before it; "
@@ -218,7 +224,13 @@ def _same(joint: Joint, mechanism: Mechanism) -> Joint:
 
 def _checked(mechanism: Mechanism) -> Mechanism:
     """The mechanism, checked: its gears are never zero."""
+    turns = () if mechanism.chain is None else _arguments(mechanism)
+    turned = {s for turn in turns for s in turn.free_symbols}
     for joint in mechanism.joints:
+        if joint.kind is Kind.LINEAR and joint.symbol in turned:
+            raise DescriptionError(
+                f"the chain turns by {joint.name!r}, which is a length: declare it rotary, and let it move lengths, too"
+            )
         if joint.loops and (joint.ratio != 1 or joint.coupling != 0):
             raise DescriptionError(f"joint {joint.moved_name!r} is driven by a loop: state its gear in the loop")
         if joint.ratio == 1:

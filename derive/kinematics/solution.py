@@ -32,7 +32,7 @@ from derive.kinematics.search.derivations import Searched
 from derive.kinematics.shared_names import refuse_names_of_joints, refuse_shared_names
 from derive.plate.passive import GUIDES, guides_determinant
 from derive.plate.plate import check_home
-from derive.plate.stated_rods import with_fixed_point, with_positive_lengths, with_stated_rods
+from derive.plate.stated_rods import with_fixed_point, with_free_twist, with_positive_lengths, with_stated_rods
 from derive.plate.surplus import with_surplus
 
 _MOTOR = "motor_"
@@ -84,7 +84,7 @@ def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> 
     mechanism = in_form(mechanism, further)
     mechanism = with_surplus(mechanism, len(mechanism.solved_joints) - len(jacobian_rows(mechanism)))
     check_joints(mechanism)
-    return with_positive_lengths(with_stated_rods(with_fixed_point(mechanism)))
+    return with_free_twist(with_positive_lengths(with_stated_rods(with_fixed_point(mechanism))))
 
 
 def solve_machine(mechanism: Mechanism) -> Solution:

@@ -16,6 +16,7 @@ import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Mechanism, Plane, Rod, Turning, on_plate
 from derive.equations.closures.fixed_names import with_fixed_names
+from derive.equations.closures.stated import ring_span
 from derive.ir.constants import SHORTEST_LINK
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let
@@ -108,6 +109,11 @@ def is_direction(leg: Leg) -> bool:
     return isinstance(leg, Plane) and not sp.Matrix(leg.plate).free_symbols & {*map(real, COORDINATE_NAMES)}
 
 
+def arm_names(word: str, leg: Leg) -> tuple[sp.Symbol, ...]:
+    """The names of the vector from the origin of the plate to the leg's joint there; to the centre of its ring."""
+    return names(word if isinstance(leg, Plane) or leg.ring is None else f"{word}_to_ring", leg)
+
+
 def turned(rotation: sp.Matrix, point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
     """The product of a rotation and a point, bound to the names `called`."""
     size = len(point)
@@ -129,10 +135,18 @@ def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
 
 
 def span(
-    rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr], word: str = "span"
+    mechanism: Mechanism, rod: Rod, pose: tuple[Sequence[sp.Expr], sp.Matrix], base: Sequence[sp.Expr], arm: str = "arm"
 ) -> tuple[Let, ...]:
-    """The vector from the joint on the base to the joint on the plate."""
-    lets = (Let(n, p + a - b) for n, p, a, b in zip(names(word, rod), position, arm, base, strict=False))
+    """The vector from the joint on the base to the joint on the plate. arm: the word in the names of its arm, which are
+    bound; on a ring they are bound here.
+    """
+    (position, rotation), word = pose, vector_word(mechanism, rod)
+    between = [p + a - b for p, a, b in zip(position, arm_names(arm, rod), base, strict=False)]
+    if rod.ring is not None:
+        lets = ring_span(mechanism, rod, between, rotation[:, 2], word)
+        ends = zip(names(arm, rod), names(word, rod), base, position, strict=True)
+        return (*lets, *(Let(n, s + b - p) for n, s, b, p in ends))
+    lets = tuple(Let(n, v) for n, v in zip(names(word, rod), between, strict=True))
     return with_note(lets, f"leg {rod.name}: vector from its joint on the base to its joint on the platform")
 
 
@@ -163,21 +177,23 @@ def span_moment(mechanism: Mechanism, rod: Rod, arm: Sequence[sp.Expr], word: st
 
 
 def plane_row(
-    mechanism: Mechanism, plane: Plane, arm: Sequence[sp.Expr], values: Sequence[sp.Expr] | None = None
+    mechanism: Mechanism, plane: Plane, arm: Sequence[sp.Expr], rotation: sp.Matrix, *, named: bool = True
 ) -> tuple[Let, ...]:
     """A row of A for a plane: its normal, and the normal's moment about the origin of the plate.
 
-    values: the normal with names for angles and roots of the machine; None: these names are made here.
+    rotation: that of the plate; named: whether angles and roots of the machine have names.
     """
-    normal = names(NORMAL, plane)
-    values = values or tuple(with_fixed_names(mechanism, v) for v in plane.normal)
+    normal, there = names(NORMAL, plane), dict(zip(ROTATION_ENTRIES, rotation, strict=True))
+    values = (with_fixed_names(mechanism, v) if named else v for v in plane.normal)
+    values = (v.xreplace(there) for v in values) if plane.turns_along else values
     lets = (*(Let(n, v) for n, v in zip(normal, values, strict=True)), *_moment(mechanism, plane, arm, normal))
     return with_note(lets, f"guide {plane.name}: its normal, and the moment of this about the platform's origin")
 
 
 def _moment(mechanism: Mechanism, leg: Leg, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
     padded = [sp.Matrix([*v, *[0] * (3 - len(v))]) for v in (arm, vector)]
-    moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / RADIUS, strict=True))
+    size = sp.Integer(1) if isinstance(leg, Plane) and leg.turns_along else RADIUS
+    moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / size, strict=True))
     return tuple(Let(n, moment[c]) for n, c in zip(moments(mechanism, leg), rotation_axes(mechanism), strict=True))
 
 

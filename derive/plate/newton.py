@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import Mechanism, Plane, Turning
 from derive.equations.axes import Forward, finite, joint_lets
 from derive.equations.closures.fixed_names import fixed_lets, with_fixed_names
@@ -43,6 +44,7 @@ from derive.plate.legs import (
     RADIUS,
     about_z,
     angles,
+    arm_names,
     by_angles,
     home_angles,
     is_direction,
@@ -172,9 +174,9 @@ def found_again(mechanism: Mechanism) -> tuple[Statement, ...]:
     reason, asked = about_machine(Why.NOT_FOUND_AGAIN), flag(CHECK_FORWARD)
     pose = (*_position(mechanism), *_rotation_names(mechanism))
     call = replace(_call(mechanism, at_home(mechanism)), names=tuple(map(_found, pose)))
-    position = (sp.Le(sp.Abs(_found(c) - c), PLANE * SCALE) for c in _position(mechanism))
-    rotation = (sp.Le(sp.Abs(_found(r) - r), PLANE) for r in _rotation_names(mechanism))
-    is_same = sp.And(*position, *rotation)
+    turned = ROTATION_ENTRIES[2::3] if FREE_TWIST in mechanism.guides else _rotation_names(mechanism)
+    most = dict.fromkeys(_position(mechanism), PLANE * SCALE) | dict.fromkeys(turned, PLANE)
+    is_same = sp.And(*[sp.Le(sp.Abs(_found(n) - n), size) for n, size in most.items()])
     call = replace(call, wanted=asked, refusal=(Status.UNREACHABLE, reason))
     return (call, Require(sp.Or(sp.Not(asked), is_same), Status.UNREACHABLE, reason=reason))
 
@@ -204,8 +206,7 @@ def search_program(mechanism: Mechanism) -> Program:
 def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The iteration: position and rotation at given joint values, and the rows of A there."""
     pose = (*_position(mechanism), *map(real, angles(mechanism)))
-    within = real("within")
-    bases = _bases(mechanism)
+    within, bases = real("within"), _bases(mechanism)
     fits = sp.And(*[sp.Le(sp.Abs(leg_symbol("error", leg)), within) for leg in legs_of(mechanism)])
     fit, fitted = flag("fit"), flag("fitted")
     loop = Iterate(
@@ -272,23 +273,23 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
     if _is_free(mechanism):
         turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
         lets += with_note(turn, "rotation from the start: Rz(yaw) Ry(pitch) Rx(roll)")
-    values = iter(bases[1])
+    values, rotation = iter(bases[1]), _turn(mechanism) * _begin_rotation(mechanism)
     for rod in mechanism.holding_rods:
         base, wanted = [next(values) for _ in rod.base], next(values)
         arm, word = names("arm", rod), vector_word(mechanism, rod)
-        lets += turned(_turn(mechanism), names("start_arm", rod), arm)
-        lets += [*span(rod, position_of(mechanism), arm, base, word), length(rod, word)]
+        lets += turned(_turn(mechanism), names("start_arm", rod), arm_names("arm", rod))
+        lets += [*span(mechanism, rod, (position_of(mechanism), rotation), base), length(rod, word)]
         lets += row(mechanism, rod, arm, leg_symbol("length", rod), word)
         error = leg_symbol("length", rod) - wanted
         lets.append(Let(leg_symbol("error", rod), error, f"length error of leg {rod.name}"))
     for plane in mechanism.guides:
         arm, normal = names("arm", plane), names(NORMAL, plane)
         lets += turned(_turn(mechanism), names("start_arm", plane), arm)
-        lets += plane_row(mechanism, plane, arm)
+        lets += plane_row(mechanism, plane, arm, rotation)
         point = arm if is_direction(plane) else (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
         ahead = sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
-        error = ahead - next(values)
-        lets.append(Let(leg_symbol("error", plane), error, f"distance of guide {plane.name} from its plane"))
+        note = f"distance of guide {plane.name} from its plane"
+        lets.append(Let(leg_symbol("error", plane), ahead - next(values), note))
     return tuple(lets)
 
 
@@ -297,14 +298,14 @@ def legs_at_pose(mechanism: Mechanism) -> tuple[Let, ...]:
     lets, ends = _bases(mechanism)
     values, found = iter(ends), [*lets]
     for leg in legs_of(mechanism):
-        arm = names("arm", leg)
-        found += turned(rotation_of(mechanism), point_of(leg), arm)
+        arm, rotation = names("arm", leg), rotation_of(mechanism)
+        found += turned(rotation, point_of(leg), arm_names("arm", leg))
         if isinstance(leg, Plane):
-            found += plane_row(mechanism, leg, arm)
+            found += plane_row(mechanism, leg, arm, rotation)
             continue
         base, measured = [next(values) for _ in leg.base], next(values)
-        word = vector_word(mechanism, leg)
-        found += [*span(leg, position_of(mechanism), arm, base, word), *row(mechanism, leg, arm, measured, word)]
+        found += span(mechanism, leg, (position_of(mechanism), rotation), base)
+        found += row(mechanism, leg, arm, measured, vector_word(mechanism, leg))
     return tuple(found)
 
 
@@ -313,8 +314,7 @@ def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     about = rotation_axes(mechanism)
     twist = tuple(real(f"{c}_rate") for c in mechanism.motion.position), tuple(real(f"swing_{c}") for c in about)
     spin = tuple(real(f"spin_{c}") for c in about)
-    size = real("size")
-    too_large = sp.Gt(size, sp.Rational(1, 2))
+    size, too_large = real("size"), sp.Gt(real("size"), sp.Rational(1, 2))
     shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in angles(mechanism))]
     errors = tuple(-leg_symbol("error", leg) for leg in legs_of(mechanism))
     return (

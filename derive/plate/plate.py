@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 import sympy as sp
 
 from derive.algebra.normal_form import polynomial
+from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import Branch, DescriptionError, Mechanism, Rod, Turning
 from derive.equations.closures.fixed_names import all_angles, fixed_angles, signs_of, with_fixed_names
 from derive.ir.constants import DEGREE, SHORTEST_LINK, SINGULAR
@@ -34,6 +35,7 @@ from derive.plate.cones import cone_axes, cone_checks, cone_constants
 from derive.plate.legs import (
     MARGIN,
     RADIUS,
+    arm_names,
     by_angles,
     divisor,
     home_angles,
@@ -62,16 +64,16 @@ _HELD = "a home pose at which the legs hold the platform"
 
 
 def machine_statements(mechanism: Mechanism, at_home: Sequence[Statement] = ()) -> tuple[Statement, ...]:
-    """The statements that depend on parameters alone: home rotation and arms, scales, assembly mode
-    at the home pose.
+    """The statements of parameters alone: home rotation and arms, scales, assembly mode at the home pose.
 
     at_home: the statements that bind the joints at the home pose, `home_cos_a1`, where joints move ends of rods.
     """
-    later = (rod for rod in mechanism.holding_rods if is_driven(mechanism, rod.base))
+    later = [rod for rod in mechanism.holding_rods if is_driven(mechanism, rod.base)]
     return (
         *platform_size(mechanism),
         *at_home,
         *(let for rod in later for let in _span_at_home(mechanism, rod)),
+        *(length(rod, vector_word(mechanism, rod)) for rod in later if is_driven(mechanism, [rod.length])),
         *_mode_at_home(mechanism),
         *modes_at_home(mechanism, pose_at_home(mechanism)),
     )
@@ -93,7 +95,7 @@ def platform_size(mechanism: Mechanism) -> tuple[Statement, ...]:
     return (
         *trigonometric,
         *(Let(n, v) for n, v in entries),
-        *(let for leg in legs_of(mechanism) for let in turned(home, point_of(leg), names("home_arm", leg))),
+        *(let for leg in legs_of(mechanism) for let in turned(home, point_of(leg), arm_names("home_arm", leg))),
         *_platform_radius(mechanism),
         *_lengths_at_home(mechanism),
     )
@@ -110,7 +112,7 @@ def check_home(mechanism: Mechanism) -> None:
     if mechanism.motion.turning is Turning.DIRECTION:
         raise DescriptionError(
             "a loop may turn its platform about z, or about every axis: it commands a direction only where guides hold "
-            "what is not commanded"
+            "what is not commanded, or no rod feels a turn about it"
         )
     if mechanism.offset_interface:
         raise DescriptionError(
@@ -120,6 +122,12 @@ def check_home(mechanism: Mechanism) -> None:
         raise DescriptionError("a loop that turns its platform needs no assembly: its home pose tells the mode")
     count = len(mechanism.motion.position) + len(rotation_axes(mechanism))
     legs = legs_of(mechanism)
+    for one in mechanism.rods:
+        if one.ring is not None and (is_driven(mechanism, one.base) or FREE_TWIST not in mechanism.guides):
+            raise DescriptionError(
+                f"rod {one.name!r}: a rod that ends on a ring begins at a fixed point, and its platform is commanded a "
+                "direction, about which no rod feels a turn"
+            )
     if len(mechanism.fixed_guides) != len(mechanism.passive):
         raise DescriptionError(
             f"the platform moves {count} quantities, and the task commands all{_but(mechanism.passive)}: as many "
@@ -138,7 +146,7 @@ def check_home(mechanism: Mechanism) -> None:
             raise DescriptionError(
                 f"{what} {leg.name!r}: {end} must be a point of the plate, which no joint moves on it"
             )
-    for plane in mechanism.guides:
+    for plane in (g for g in mechanism.guides if not g.turns_along):
         if strange := {s for v in plane.normal for s in v.free_symbols} - {p.symbol for p in mechanism.parameters}:
             raise DescriptionError(
                 f"guide {plane.name!r}: its normal reads {min(map(str, strange))!r}, and is made of parameters alone"
@@ -201,24 +209,35 @@ def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
 
 
 def _lengths_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
-    """The lengths of the legs at the home pose: where one is a joint, it follows from the pose."""
+    """The lengths of the legs at the home pose: where one is a joint, it follows from the pose. If joints move its base
+    as well, they are zero for this.
+    """
     rods = mechanism.holding_rods
     fixed = [rod for rod in rods if not is_driven(mechanism, rod.base)]
-    measured = [rod for rod in fixed if is_driven(mechanism, [rod.length])]
-    lengths = tuple(leg_symbol("length", rod) for rod in rods)
+    measured = [rod for rod in rods if is_driven(mechanism, [rod.length])]
+    lengths = tuple(leg_symbol("length" if r in fixed or r not in measured else "rest_length", r) for r in rods)
     shortest = SHORTEST_LINK * SCALE
     apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
     return (
         *(let for rod in fixed for let in _span_at_home(mechanism, rod)),
-        *(length(rod) if rod in measured else Let(leg_symbol("length", rod), rod.length) for rod in rods),
+        *(_at_rest(mechanism, r, n) if r in measured else Let(n, r.length) for r, n in zip(rods, lengths, strict=True)),
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "characteristic length: mean leg, radius of the platform"),
         Require(apart, Status.NOT_INITIALIZED, reason=about_parameters(_APART)),
     )
 
 
+def _at_rest(mechanism: Mechanism, rod: Rod, name: sp.Symbol) -> Let:
+    """The length of a leg at the home pose, with the joints that move its base at zero."""
+    if not is_driven(mechanism, rod.base):
+        return length(rod)
+    base = (v.xreplace({j.symbol: sp.Integer(0) for j in mechanism.joints}) for v in rod.base)
+    ends = zip(home_position(mechanism), names("home_arm", rod), base, strict=False)
+    return Let(name, Root(sp.Add(*[(p + a - b) ** 2 for p, a, b in ends])))
+
+
 def _span_at_home(mechanism: Mechanism, rod: Rod) -> tuple[Let, ...]:
     base = [at_home_joints(mechanism, v) for v in rod.base]
-    return span(rod, home_position(mechanism), names("home_arm", rod), base, vector_word(mechanism, rod))
+    return span(mechanism, rod, (home_position(mechanism), home_rotation(mechanism)), base, "home_arm")
 
 
 def at_home_joints(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
@@ -235,7 +254,8 @@ def _mode_at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         row(mechanism, rod, names("home_arm", rod), leg_symbol("length", rod), vector_word(mechanism, rod))
         for rod in mechanism.holding_rods
     )
-    planes = (plane_row(mechanism, plane, names("home_arm", plane), plane.normal) for plane in mechanism.guides)
+    home = home_rotation(mechanism)
+    planes = (plane_row(mechanism, p, names("home_arm", p), home, named=False) for p in mechanism.guides)
     return (
         *(let for lets in (*lines, *planes) for let in lets),
         *cone_axes(mechanism, home_rotation(mechanism)),
@@ -280,9 +300,7 @@ def _start(mechanism: Mechanism) -> Iterator[Output]:
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
-    """The checks of a solved inverse: legs with a length, the assembly mode of the machine, a distance from the
-    singularity.
-    """
+    """The checks of a solved inverse: legs with a length, the machine's assembly mode, no singularity."""
     bound = {s.name for s in solved if isinstance(s, Let)}
     lets: list[Let] = []
     for rod in mechanism.holding_rods:
@@ -294,15 +312,15 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
             for v in rod.base
         ]
         vectors = (
-            *turned(rotation_of(mechanism), point_of(rod), arm),
-            *span(rod, position_of(mechanism), arm, base, word),
+            *turned(rotation_of(mechanism), point_of(rod), arm_names("arm", rod)),
+            *span(mechanism, rod, (position_of(mechanism), rotation_of(mechanism)), base),
             *span_moment(mechanism, rod, arm, word),
         )
         lets += [let for let in vectors if let.name not in bound]
         lets += [divisor(rod, rod.length)] if is_driven(mechanism, [rod.length]) else []
     for plane in mechanism.guides:
-        arm = names("arm", plane)
-        vectors = (*turned(rotation_of(mechanism), point_of(plane), arm), *plane_row(mechanism, plane, arm))
+        arm, rotation = names("arm", plane), rotation_of(mechanism)
+        vectors = (*turned(rotation, point_of(plane), arm), *plane_row(mechanism, plane, arm, rotation))
         lets += [let for let in vectors if let.name not in bound]
     margin, least = ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN)
     lengths = sp.Mul(
@@ -312,7 +330,8 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     words = [vector_word(mechanism, rod) for rod in mechanism.holding_rods]
     return (
         *lets,
-        *(_long_enough(rod) for rod in mechanism.holding_rods if is_driven(mechanism, [rod.length])),
+        *(_beyond(rod, rod.length) for rod in mechanism.holding_rods if is_driven(mechanism, [rod.length])),
+        *(_beyond(rod, real(f"off_axis_{rod.name}")) for rod in mechanism.holding_rods if rod.ring is not None),
         *cone_checks(mechanism),
         Solve((), rows(mechanism, words), (), of_spans, "determinant of the spans of the legs and their moments"),
         Let(
@@ -324,7 +343,8 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     )
 
 
-def _long_enough(rod: Rod) -> Require:
+def _beyond(rod: Rod, length: sp.Expr) -> Require:
+    """The condition that a rod has a length, or that its base is off the axis of its ring."""
     return Require(
-        sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
+        sp.Gt(length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, reason=about_leg(rod.name, Why.WITHOUT_LENGTH)
     )

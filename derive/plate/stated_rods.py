@@ -16,7 +16,8 @@ from typing import TypeVar
 import numpy as np
 import sympy as sp
 
-from derive.description.mechanism import Mechanism, Plane, Rod, Turning, guide, on_plate, rod
+from derive.description.loops import FREE_TWIST
+from derive.description.mechanism import ROTATION, Mechanism, Plane, Rod, Turning, guide, on_plate, ring_rod, rod
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import evaluate
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
@@ -35,7 +36,9 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     left: list[sp.Expr] = []
     for number, equation in enumerate(mechanism.closure, 1):
         name = str(number) if not {str(number), f"guide_{number}"} & taken else f"closure_{number}"
-        read = _rod_of(mechanism, name, sp.sympify(equation)) or _plane_of(mechanism, name, sp.sympify(equation))
+        stated = sp.sympify(equation)
+        read = _rod_of(mechanism, name, stated) or _plane_of(mechanism, name, stated)
+        read = read or _rod_at_half_turns(mechanism, name, stated)
         if read is None:
             left.append(equation)
         else:
@@ -46,6 +49,15 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
         return mechanism
     own = replace(mechanism, rods=(*rods, *mechanism.rods), guides=(*guides, *mechanism.guides))
     return replace(own, closure=tuple(left))
+
+
+def with_free_twist(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with `FREE_TWIST` among its guides, if it commands a direction and no leg feels a turn about it."""
+    ends = (*[r.plate for r in mechanism.rods], *[g.plate for g in mechanism.guides])
+    is_felt = any(v.free_symbols & {*ROTATION[:, :2]} for end in ends for v in end)
+    if not mechanism.is_platform or mechanism.task.turning is not Turning.DIRECTION or mechanism.closure or is_felt:
+        return mechanism
+    return replace(mechanism, guides=(*mechanism.guides, FREE_TWIST))
 
 
 def with_positive_lengths(mechanism: Mechanism) -> Mechanism:
@@ -92,6 +104,49 @@ def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
     return mechanism.task.turning is Turning.ABOUT_Z and real("z") not in equation.free_symbols
 
 
+def _rod_at_half_turns(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
+    """The rod, which may end on a ring, that has this equation but for a constant factor, in whatever frame this is
+    written; None if there is none.
+
+    Of a centre c = x + R t, an axis n and v = c - b, a rod on a ring has v . v - 2 r d = L^2 - r^2, where d is the root
+    of v . v - (v . n)^2. Without it the coefficient of x is R t - b, twice: half turns tell t and b apart.
+    """
+    if _is_flat(mechanism, equation):
+        return None
+    exact = {number: sp.Rational(number) for number in equation.atoms(sp.Float)}
+    seen = [_at(equation.xreplace(exact), turns) for turns in ((1, 1, 1), (-1, -1, 1), (1, -1, -1))]
+    if any(s is None for s in seen):
+        return None
+    factors, twices, forms = zip(*(s for s in seen if s is not None), strict=True)
+    level, about_z, about_x = ([form.coeff_monomial(c) / (2 * factors[0]) for c in _ORIGIN] for form in forms)
+    point = [(level[0] - about_z[0]) / 2, (level[1] - about_z[1]) / 2, (level[2] - about_x[2]) / 2]
+    base = [sp.expand(p - v) for p, v in zip(point, level, strict=True)]
+    radius = sp.cancel(-twices[0] / (2 * factors[0]))
+    square = sp.expand(sum(v**2 for v in level) + radius**2) - sp.expand(forms[0].coeff_monomial(1) / factors[0])
+    length = _root_of(mechanism, square)
+    if length is None:
+        return None
+    ends = [_plain(sp.expand(v)) for v in base], on_plate(*(_plain(sp.expand(v)) for v in point))
+    read = rod(name, *ends, _plain(length)) if radius == 0 else ring_rod(name, *ends, _plain(radius), _plain(length))
+    return read if _is_same(mechanism, read.equation * factors[0], equation) else None
+
+
+def _at(equation: sp.Expr, turns: Sequence[int]) -> tuple[sp.Expr, sp.Expr, sp.Poly] | None:
+    """The equation at half turns of the platform: the factor of x^2, that of a root in it, and what is left without."""
+    there = sp.expand(equation.xreplace(dict(zip(ROTATION_ENTRIES, sp.diag(*turns), strict=True))))
+    roots = {p for p in there.atoms(sp.Pow) if p.exp == sp.Rational(1, 2) and p.free_symbols & {*_ORIGIN}}
+    names = dict(zip(roots, [_ROOT], strict=False))
+    left = there.xreplace(names)
+    if len(roots) > 1 or not left.is_polynomial(_ROOT, *_ORIGIN):
+        return None
+    twice = sp.expand(left.coeff(_ROOT))
+    form = sp.Poly(left - twice * _ROOT, *_ORIGIN)
+    factor = form.coeff_monomial(_ORIGIN[0] ** 2)
+    if factor == 0 or form.total_degree() != 2 or twice.free_symbols & {*_ORIGIN, _ROOT} or _ROOT in form.free_symbols:
+        return None
+    return factor, twice, form
+
+
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     """The rod that has this equation but for a constant factor; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
@@ -113,16 +168,22 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
     between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
     square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
+    length = _root_of(mechanism, square)
+    if length is None:
+        return None
+    read = rod(name, [_plain(v) for v in base], [_plain(v) for v in plate], _plain(length))
+    return read if _is_same(mechanism, read.equation * factor, equation) else None
+
+
+def _root_of(mechanism: Mechanism, square: sp.Expr) -> sp.Expr | None:
+    """The length with this square; None where joints are left in a root."""
     length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True).replace(sp.Abs, lambda of: of)
     joints = {j.symbol for j in mechanism.joints}
-    if any(p.exp == sp.Rational(1, 2) and p.free_symbols & joints for p in length.atoms(sp.Pow)):
+    if length.has(sp.I) or any(p.exp == sp.Rational(1, 2) and p.free_symbols & joints for p in length.atoms(sp.Pow)):
         return None
     nominal = {p.symbol: sp.Float(p.nominal) for p in mechanism.parameters}
     nominal |= {j.symbol: sp.Float(j.nominal) for j in mechanism.joints}
-    if length.xreplace(nominal).is_negative:  # a square tells no sign, and a rod has a positive length
-        length = -length
-    read = rod(name, [_plain(v) for v in base], [_plain(v) for v in plate], _plain(length))
-    return read if not length.has(sp.I) and _is_same(mechanism, read.equation * factor, equation) else None
+    return -length if length.xreplace(nominal).is_negative else length  # a square tells no sign, and a length has one
 
 
 def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
@@ -169,6 +230,7 @@ def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:
 
 End = TypeVar("End", Rod, Plane)
 _ORIGIN = tuple(real(c) for c in COORDINATE_NAMES)
+_ROOT = sp.Symbol("root of a ring")
 
 
 def with_fixed_point(mechanism: Mechanism) -> Mechanism:

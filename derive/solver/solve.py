@@ -207,9 +207,9 @@ def _next(
         binding = resolve(problem, total) if total.replaced in problem.pending else None
         if binding is not None:
             return problem, binding, sums
-    found = _of_a_trial(problem)
+    found, seen = _of_a_trial(problem), _seen_from_slides(problem)
     if found is None:
-        found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+        found = _best(candidate for tier in TIERS for candidate in [_candidates(seen, tier(seen))])
     if found is not None and not found.yields_to_a_sum:
         return problem, _with_one_root(problem, found), sums
     for total in candidate_sums(problem, arguments):
@@ -221,10 +221,19 @@ def _next(
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
     if found is None and not problem.is_overdetermined:
-        found = _best(last_resort(problem) for last_resort in _LAST)
+        found = _best(last_resort(seen) for last_resort in _LAST)
     if found is not None:
         return problem, _with_one_root(problem, found), sums
     raise Unsolved(unsolved(problem))
+
+
+def _seen_from_slides(problem: Problem) -> Problem:
+    """The problem; with every angle known, its positions seen in the known frame in front of the slides: an equation
+    there has often one of them alone, and is always shorter.
+    """
+    if problem.angles or problem.pending:
+        return problem
+    return replace(problem, equations=positions(problem) or problem.equations)
 
 
 def _of_a_trial(problem: Problem) -> Binding | None:

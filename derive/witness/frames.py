@@ -143,8 +143,10 @@ def passive_rows(described: Mechanism) -> tuple[str, ...]:
     if not described.is_platform:
         return ()
     read = {s for e in described.equations for s in sp.sympify(e).free_symbols}
-    own = (c for c in COORDINATE_NAMES if real(c) in read and c not in described.task.position)
-    return (*own, *((_TWIST,) if described.task.turning is Turning.DIRECTION else ()))
+    own = tuple(c for c in COORDINATE_NAMES if real(c) in read and c not in described.task.position)
+    is_held = described.task.turning is Turning.DIRECTION
+    is_held = is_held and len(described.equations) > len(task_rows(described)) + len(own)  # else no leg feels the twist
+    return (*own, *((_TWIST,) if is_held else ()))
 
 
 def entries_at(column: Term, places: list[int]) -> Term:

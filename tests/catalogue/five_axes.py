@@ -36,7 +36,9 @@ def tool(head: str, table: str, p: Mapping[str, float], q: Array) -> tuple[Array
         tip, rotation = place + np.einsum("nij,nj->ni", turned, tip), turned @ rotation
         if len(head) == 2 and k == 0:
             tip = tip + p["fork_offset"] * np.abs(np.cross(AXES[head[0]], AXES[head[1]]))
-    tip = tip + q[:3].T
+    across = rodrigues(Z, np.radians(p.get("ec0y", 0.0))) @ Y
+    up = rodrigues(Y, np.radians(p.get("eb0z", 0.0))) @ rodrigues(X, np.radians(p.get("ea0z", 0.0))) @ Z
+    tip = tip + q[:3].T @ np.stack([X, across, up])
     for k, letter in enumerate(table):
         place, lean = stand(letter)
         back = turn(letter, -1) @ lean.T

@@ -16,6 +16,7 @@ from derive.description.mechanism import (
     length,
     linear,
     on_plate,
+    ring_rod,
     rod,
     rotary,
 )
@@ -57,10 +58,12 @@ def _arm(number: int, arm: Joint, shift: object = 0) -> tuple[object, object]:
     return x + shift + ARM * cos(arm), y + ARM * sin(arm)  # type: ignore[operator]
 
 
-_FIVE = ((-418.0, 325.0, -185.0), (418.0, 325.0, -160.0), (-418.0, -325.0, -68.0), (418.0, -325.0, -41.0),
-         (0.0, -493.0, -14.0))  # fmt: skip
-"""Of each strut x and y of its joint on the base, and where it ends on the spindle."""
 STRUTS = tuple(linear(f"L{k}", f"Strut {k}", domain=(0.0, 1e9)) for k in range(1, 6))
+_FIVE = tuple(zip(STRUTS, ((-418.0, 325.0, -185.0), (418.0, 325.0, -160.0), (-418.0, -325.0, -68.0),
+                           (418.0, -325.0, -41.0), (0.0, -493.0, -14.0)), strict=True))  # fmt: skip
+"""Of each strut x and y of its joint on the base, and where it ends along the spindle."""
+TABLE, _TEE = (linear("TX", "Table along X"), linear("TY", "Table along Y")), ((0, 1), (0, -1), (1, 0))
+RING = length("ring_radius", "Radius of the rings", nominal=80.0)
 FRAME = length("frame_height", "Height of the joints on the base", nominal=900.0)
 
 GUIDED: Mapping[str, Mechanism] = {
@@ -109,16 +112,31 @@ GUIDED: Mapping[str, Mechanism] = {
         closure=(Z - LIFT - HEIGHT,),
         home=(0, 0, 0, 0),
     ),
-    "pentapod, whose struts end on the spindle and do not feel its twist": Mechanism(
-        name="Kin_Pentapod",
-        joints=STRUTS,
-        parameters=(FRAME,),
+    "tripod whose planes form a T, over a table with two slides": Mechanism(
+        name="Kin_TableTripod",
+        joints=(*TABLE, *CYLINDERS),
+        parameters=(BASE, PLATE, RAISED),
         task=Task("xyz", Turning.DIRECTION),
         rods=tuple(
-            rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), s) for s, (x, y, z) in zip(STRUTS, _FIVE, strict=True)
+            rod(str(k), (x * BASE - TABLE[0], y * BASE - TABLE[1], RAISED), on_plate(x * PLATE, y * PLATE, 0), c)
+            for k, ((x, y), c) in enumerate(zip(_TEE, CYLINDERS, strict=True), 1)
         ),
-        guides=(guide("twist", (0, 1, 0), tuple(ROTATION * Matrix([100, 0, 0]))),),
-        positive=STRUTS,
+        guides=(
+            guide("twist", (1, 0, 0), tuple(ROTATION * Matrix([0, PLATE, 0]))),
+            guide("1", (1, 0, 0), on_plate(0, PLATE, 0), -TABLE[0]),
+            guide("3", (0, 1, 0), on_plate(PLATE, 0, 0), -TABLE[1]),
+        ),
+        home=(0, 0, 450, 0, 0, 0),
+    ),
+    "pentapod, whose struts end on the spindle and on rings around it": Mechanism(
+        name="Kin_Pentapod",
+        joints=STRUTS,
+        parameters=(FRAME, RING),
+        task=Task("xyz", Turning.DIRECTION),
+        rods=(
+            *(ring_rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), RING, s) for s, (x, y, z) in _FIVE[:3]),
+            *(rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), s) for s, (x, y, z) in _FIVE[3:]),
+        ),
         home=(0, 0, 400, 0, 0, 0),
     ),
     "plate on two cylinders along a skewed guide": Mechanism(

@@ -105,6 +105,7 @@ WITH_SHARED_MOTORS = {
     "CoreXY with C": _machine(
         "CoreXyC", Tx((A + B) / 20) * Ty((A - B) / 20) * Tz(Z) * Rz(C), TURNED, offset_interface=True
     ),
+    "beam on two racks": _machine("SkewBeam", Tx(L4 * A) * Rz(L4 / L3 * (A - B)) * Ty(Y), Task("xy", Turning.ABOUT_Z)),
     "head on a differential": _machine(
         "Differential",
         Tx(X) * Ty(Y) * Tz(Z) * Rz((A + B) / 2) * Ry((A - B) / 2) * Tz(L4),

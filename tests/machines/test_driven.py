@@ -192,6 +192,10 @@ REFUSED: dict[str, tuple[Callable[[], Mechanism], str]] = {
         lambda: replace(LEG, drives=(replace(LEG.drives[0], length=THIGH.symbol), LEG.drives[1]), joints=(S1, M2)),
         "the loop of joint 'H' does not read 'S1'",
     ),
+    "a loop that a third joint moves": (
+        lambda: replace(LEG, drives=(replace(LEG.drives[0], start=Tx(M2)), LEG.drives[1]), joints=(S1, M2)),
+        "the loop of joint 'H' reads 'm2': only 'H' and 'S1' may move its ends",
+    ),
     "a loop around a closure": (
         lambda: replace(LEG, chain=None, closure=(cos(HIP),), joints=(S1, M2)),
         "drives= are loops that move joints of a chain",

@@ -22,8 +22,8 @@ LENGTHS = {"pivot_x": 30.0, "pivot_y": -40.0, "pivot_z": 55.0, "tool_length": 12
 NUTATION = 52.0
 VARIANTS = [
     *((order, is_nutating, False) for order in ORDERS for is_nutating in (False, True)),
-    ("TableTable_AC", False, True), ("HeadTable_BA", True, True), ("HeadHead_CB", True, True),
-    ("HeadHead_AB", False, True),
+    ("TableTable_AC", False, True), ("TableTable_BA", True, True), ("HeadTable_BA", True, True),
+    ("HeadHead_CB", True, True), ("HeadHead_AB", False, True),
 ]  # fmt: skip
 PRESENT = (12.0, -7.0, 33.0)
 

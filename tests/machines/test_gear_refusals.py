@@ -50,6 +50,10 @@ def _with(name: str, **changes: object) -> Mechanism:
             " angle by motors of earlier axes and its own, or give the gears as numbers",
         ),
         (
+            _with("SCARA with gears", chain=Rz(A1 + Z / L1) * Tx(L1) * Rz(A2) * Tx(L2) * Tz(Z)),
+            "the chain turns by 'Z', which is a length: declare it rotary, and let it move lengths, too",
+        ),
+        (
             _with("SCARA with gears", joints=(rotary("A1", "turn", domain=(-90.0, 90.0)), A2, Z)),
             "joint 'A1' has a gear and a domain: state the domain as limits of its axis",
         ),

@@ -195,6 +195,7 @@ KINDS = {
     "SCARA with gears": "geared geared linear",
     "SCARA whose quill is geared": "rotary rotary linear geared",
     "CoreXY with C": "driving driving linear rotary",
+    "beam on two racks": "driving geared linear",
     "head on a differential": "linear linear linear geared geared",
     "head on a differential without gears": "linear linear linear rotary rotary",
     "SCARA with a nut and a spline": "rotary rotary driving rotary",

@@ -33,7 +33,8 @@ SOLUTIONS = {
     "Z3 head with slides": 4,
     "head in metres whose planes form a T, stated as equations": 4,
     "3-RRR on a lift": 7,
-    "pentapod, whose struts end on the spindle and do not feel its twist": 1,
+    "tripod whose planes form a T, over a table with two slides": 1,
+    "pentapod, whose struts end on the spindle and on rings around it": 1,
     "plate on two cylinders along a skewed guide": 1,
 }
 """The most solutions in the assembly mode of the machine, at the poses where the witness counts them."""
@@ -105,7 +106,7 @@ def residual(one: Guided, axes: Array, frame: softkin.Frame) -> float:
     values |= {c: np.asarray(p) for c, p in zip("xyz", frame.position, strict=True)}
     values |= {r.name: np.asarray(v) for r, v in zip(ROTATION_ENTRIES, np.ravel(frame.rotation), strict=True)}
     rods = [
-        np.sqrt(sum(evaluate(p - b, values) ** 2 for p, b in zip(r.plate, r.base, strict=True)))
+        np.sqrt(sum(evaluate(p - b, values) ** 2 for p, b in zip(r.end, r.base, strict=True)))
         - evaluate(r.length, values)
         for r in one.mechanism.rods
     ]

@@ -12,6 +12,7 @@ from derive.kinematics.build import build
 from tests.machines.guided import GUIDED
 
 RPS = GUIDED["3-RPS on a raised base"]
+RINGS = GUIDED["pentapod, whose struts end on the spindle and on rings around it"]
 
 
 def test_the_steps_for_what_is_not_commanded_are_explained() -> None:
@@ -42,6 +43,20 @@ WRONG = {
     "a guide with two coordinates and three": (None, "guide '1': its normal and its point have 3 and 2 coordinates"),
     "a home pose of the task alone": (replace(RPS, home=(450, 0, 0)), "needs a home pose of 6 coordinates, and has 3"),
     "no guides": (replace(RPS, guides=()), "must be held by guides=, planes in which points of a platform that turns"),
+    "a ring whose rod begins at a slide": (
+        replace(
+            RINGS,
+            rods=(
+                replace(RINGS.rods[0], base=(sp.Integer(0), RINGS.joints[0].symbol, sp.Integer(900))),
+                *RINGS.rods[1:],
+            ),
+        ),
+        "rod '1': a rod that ends on a ring begins at a fixed point, and its platform is commanded a direction",
+    ),
+    "a ring beside a rod that feels the twist": (
+        replace(RINGS, rods=(*RINGS.rods[:4], replace(RINGS.rods[4], plate=on_plate(9, 0, 0), ring=None))),
+        "only where guides hold what is not commanded, or no rod feels a turn about it",
+    ),
     "a whole rotation": (
         replace(RPS, task=Task("z", Turning.FULL)),
         "the task commands 4 quantities (z, turn x, turn y, turn z), and there are only 3 joints",

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import sympy as sp
 
 from derive.algebra.normal_form import is_compound, polynomial, reduce_units, split_known
-from derive.description.mechanism import Mechanism, Rod
+from derive.description.mechanism import ROTATION, Mechanism, Rod
 from derive.equations.closures.closure import FLANGE, Closure, arguments_of, named_equation
 from derive.equations.closures.fixed_names import all_angles, heading_entries, signs_of, with_fixed_names
 from derive.equations.problem import Equation
+from derive.ir.primitives import Root, Select
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, cosine, real, sine
 
@@ -33,7 +37,7 @@ def stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: st
     equations += [
         named_equation(mechanism, f"guide {plane.name}", plane.equation)
         for plane in mechanism.guides
-        if plane not in mechanism.fixed_guides
+        if plane.equation.free_symbols & {j.symbol for j in mechanism.joints}
     ]
     rods = mechanism.rods if known == "span" else mechanism.holding_rods
     equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in rods]
@@ -54,6 +58,11 @@ def _rod_equation(
     unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
     lets: list[Let] = []
     total: sp.Expr = -(rod.length**2)
+    if rod.ring is not None:
+        between = [with_fixed_names(mechanism, plate - base) for plate, base in zip(rod.plate, rod.base, strict=True)]
+        known = ring_span(mechanism, rod, between, ROTATION[:, 2])
+        total += sp.Add(*[let.name**2 for let in known[-3:]])
+        return Equation(f"rod {rod.name}", total, known, _rod_scales(mechanism, rod))
     for name, plate, base in zip(COORDINATE_NAMES, rod.plate, rod.base, strict=False):
         between = with_fixed_names(mechanism, (plate - base).xreplace(table))
         form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
@@ -67,6 +76,31 @@ def _rod_equation(
         total += (moving + side * known) ** 2
     expression = reduce_units(total, all_angles(mechanism), signs_of(mechanism))
     return Equation(f"rod {rod.name}", expression, tuple(lets), _rod_scales(mechanism, rod))
+
+
+def ring_span(
+    mechanism: Mechanism, rod: Rod, between: Sequence[sp.Expr], axis: Sequence[sp.Expr], word: str = "span"
+) -> tuple[Let, ...]:
+    """The vector of a rod that ends on a ring, in the last three statements.
+
+    between: from its base to the centre of the ring; axis: that of the ring.
+    """
+    assert rod.ring is not None
+    to_centre, across, to_ring = (
+        [real(f"{what}_{rod.name}_{c}") for c in COORDINATE_NAMES] for what in ("to_centre", "across", word)
+    )
+    ahead, apart, share = (real(f"{what}_{rod.name}") for what in ("ahead", "off_axis", "ring_share"))
+    radius = with_fixed_names(mechanism, rod.ring)
+    first, *others = (Let(n, v) for n, v in zip(to_centre, between, strict=True))
+    return (
+        replace(first, note=f"rod {rod.name}: vector from its base to the centre of its ring"),
+        *others,
+        Let(ahead, sp.Add(*[c * a for c, a in zip(to_centre, axis, strict=True)])),
+        *(Let(n, c - ahead * a) for n, c, a in zip(across, to_centre, axis, strict=True)),
+        Let(apart, Root(sp.Add(*[n**2 for n in across])), "distance of its base from the axis of the ring"),
+        Let(share, radius / Select(sp.Gt(apart, 0), apart, sp.Integer(1))),
+        *(Let(n, c - share * a) for n, c, a in zip(to_ring, to_centre, across, strict=True)),
+    )
 
 
 def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:

@@ -151,7 +151,7 @@ class _Search:
         stated = (*self._mechanism.closure, *(g.equation for g in self._mechanism.guides))
         missed = [evaluate(sp.sympify(e), known) / self.size for e in stated]
         for rod in self._mechanism.rods:
-            square = sum(evaluate(p - b, known) ** 2 for p, b in zip(rod.plate, rod.base, strict=True))
+            square = sum(evaluate(p - b, known) ** 2 for p, b in zip(rod.end, rod.base, strict=True))
             missed.append((np.sqrt(square) - evaluate(rod.length, known)) / self.size)
         return np.stack([np.broadcast_to(m, (len(unknowns),)) for m in missed], axis=1)
 

@@ -27,12 +27,12 @@ void headtable_ac_regular(const void *machine, const softkin_lanes *given,
     const double cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double across_c = -r13*sign_tilt;
     const double sin_c = across_c/radius_c;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x = x*cos_c - y*sin_c;
-    const double axis_x = joint_x + offset_x;
+    const double x_from_c = x*cos_c - y*sin_c;
+    const double axis_x = offset_x + x_from_c;
     const double c_radius_of_a = radius_c*sign_tilt;
-    const double sum_in_joint_y = c_radius_of_a*pivot_length + head_offset*r33;
-    const double joint_y = (y - sum_in_joint_y*cos_c)*cos_c + (x - sum_in_joint_y*sin_c)*sin_c;
+    const double y_from_c = y*cos_c + x*sin_c;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y = y_from_c - c_radius_of_a*pivot_length - head_offset*r33;
     const double axis_y = joint_y + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z = z + pivot_length*r33 - c_radius_of_a*head_offset;
@@ -70,14 +70,13 @@ void headtable_ac_regular_all(const void *machine, const softkin_lanes *given,
     const double cos_c_positive = -r23_by_radius_c; /* at a singularity: the angle of the reference */
     const double r13_by_radius_c = r13/radius_c;
     const double sin_c_positive = -r13_by_radius_c;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_positive = x*cos_c_positive - y*sin_c_positive;
-    const double axis_x_positive = joint_x_positive + offset_x;
+    const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
+    const double axis_x_positive = offset_x + x_from_c_positive;
+    const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
     const double head_offset_times_r33 = head_offset*r33;
     const double radius_c_times_pivot_length = pivot_length*radius_c;
-    const double sum_in_joint_y_positive = head_offset_times_r33 + radius_c_times_pivot_length;
-    const double joint_y_positive = (y - sum_in_joint_y_positive*cos_c_positive)*cos_c_positive
-        + (x - sum_in_joint_y_positive*sin_c_positive)*sin_c_positive;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y_positive = y_from_c_positive - head_offset_times_r33 - radius_c_times_pivot_length;
     const double axis_y_positive = joint_y_positive + offset_y;
     const double radius_c_times_head_offset = head_offset*radius_c;
     const double z_plus_pivot_length_times_r33 = z + pivot_length*r33;
@@ -88,12 +87,11 @@ void headtable_ac_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_a_positive = offset_a + quotient_in_axis_a_positive;
     const double axis_c_positive = offset_c
         + softkin_lane_angle(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_negative = -joint_x_positive;
-    const double axis_x_negative = joint_x_negative + offset_x;
-    const double sum_in_joint_y_negative = radius_c_times_pivot_length - head_offset_times_r33;
-    const double joint_y_negative = r13_by_radius_c*(x + r13_by_radius_c*sum_in_joint_y_negative)
-        + r23_by_radius_c*(y + r23_by_radius_c*sum_in_joint_y_negative);
+    const double x_from_c_negative = -x_from_c_positive;
+    const double axis_x_negative = offset_x + x_from_c_negative;
+    const double y_from_c_negative = -y_from_c_positive;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y_negative = radius_c_times_pivot_length + y_from_c_negative - head_offset_times_r33;
     const double axis_y_negative = joint_y_negative + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z_negative = radius_c_times_head_offset + z_plus_pivot_length_times_r33;

@@ -167,12 +167,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     cos_c = cos(reference_c); /* at a singularity: the angle of the reference */
     sin_c = sin(reference_c);
   }
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x = x*cos_c - y*sin_c;
-  const double axis_x = joint_x + k->offset_x;
+  const double x_from_c = x*cos_c - y*sin_c;
+  const double axis_x = k->offset_x + x_from_c;
   const double c_radius_of_a = radius_c*sign_tilt;
-  const double sum_in_joint_y = c_radius_of_a*k->pivot_length + k->head_offset*r33;
-  const double joint_y = (y - sum_in_joint_y*cos_c)*cos_c + (x - sum_in_joint_y*sin_c)*sin_c;
+  const double y_from_c = y*cos_c + x*sin_c;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y = y_from_c - c_radius_of_a*k->pivot_length - k->head_offset*r33;
   const double axis_y = joint_y + k->offset_y;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z = z + k->pivot_length*r33 - c_radius_of_a*k->head_offset;
@@ -423,14 +423,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     cos_c_negative = cos_c_positive; /* at a singularity: the angle of the reference */
     sin_c_negative = sin_c_positive;
   }
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x_positive = x*cos_c_positive - y*sin_c_positive;
-  const double axis_x_positive = joint_x_positive + k->offset_x;
+  const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
+  const double axis_x_positive = k->offset_x + x_from_c_positive;
+  const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
   const double head_offset_times_r33 = k->head_offset*r33;
   const double radius_c_times_pivot_length = k->pivot_length*radius_c;
-  const double sum_in_joint_y_positive = head_offset_times_r33 + radius_c_times_pivot_length;
-  const double joint_y_positive = (y - sum_in_joint_y_positive*cos_c_positive)*cos_c_positive
-      + (x - sum_in_joint_y_positive*sin_c_positive)*sin_c_positive;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y_positive = y_from_c_positive - head_offset_times_r33 - radius_c_times_pivot_length;
   const double axis_y_positive = joint_y_positive + k->offset_y;
   const double radius_c_times_head_offset = k->head_offset*radius_c;
   const double z_plus_pivot_length_times_r33 = z + k->pivot_length*r33;
@@ -441,20 +440,19 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_a_positive = k->offset_a + quotient_in_axis_a_positive;
   const double axis_c_positive = k->offset_c
       + softkin_angle_of(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
-  double joint_x_negative, axis_c_negative;
+  double x_from_c_negative, y_from_c_negative, axis_c_negative;
   if (radius_c > 2e-12) {
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    joint_x_negative = -joint_x_positive;
+    x_from_c_negative = -x_from_c_positive;
+    y_from_c_negative = -y_from_c_positive;
     axis_c_negative = 180.0 + axis_c_positive;
   } else {
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    joint_x_negative = x*cos_c_negative - y*sin_c_negative;
+    x_from_c_negative = x*cos_c_negative - y*sin_c_negative;
+    y_from_c_negative = y*cos_c_negative + x*sin_c_negative;
     axis_c_negative = k->offset_c + softkin_angle_of(sin_c_negative, cos_c_negative)*SOFTKIN_RADIAN;
   }
-  const double axis_x_negative = joint_x_negative + k->offset_x;
-  const double sum_in_joint_y_negative = radius_c_times_pivot_length - head_offset_times_r33;
-  const double joint_y_negative = cos_c_negative*(y + sum_in_joint_y_negative*cos_c_negative)
-      + sin_c_negative*(x + sum_in_joint_y_negative*sin_c_negative);
+  const double axis_x_negative = k->offset_x + x_from_c_negative;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y_negative = radius_c_times_pivot_length + y_from_c_negative - head_offset_times_r33;
   const double axis_y_negative = joint_y_negative + k->offset_y;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z_negative = radius_c_times_head_offset + z_plus_pivot_length_times_r33;

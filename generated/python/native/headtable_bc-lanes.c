@@ -22,18 +22,18 @@ void headtable_bc_regular(const void *machine, const softkin_lanes *given,
     const double radius_c = softkin_lane_root(r13*r13 + r23*r23);
     missed += radius_c > 2e-12 ? 0.0 : 1.0;
     const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
+    const double c_radius_of_b = radius_c*sign_tilt;
     /* polar coordinates: angle c from the r13 and r23 equations */
     const double along_c = r13*sign_tilt;
     const double cos_c = along_c/radius_c; /* at a singularity: the angle of the reference */
     const double across_c = -r23*sign_tilt;
     const double sin_c = across_c/radius_c;
-    const double c_radius_of_b = radius_c*sign_tilt;
-    const double sum_in_joint_x = c_radius_of_b*pivot_length - head_offset*r33;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x = cos_c*(x + sum_in_joint_x*cos_c) + sin_c*(sum_in_joint_x*sin_c - y);
+    const double x_from_c = x*cos_c - y*sin_c;
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x = x_from_c + c_radius_of_b*pivot_length - head_offset*r33;
     const double axis_x = joint_x + offset_x;
-    const double joint_y = y*cos_c + x*sin_c;
-    const double axis_y = joint_y + offset_y;
+    const double y_from_c = y*cos_c + x*sin_c;
+    const double axis_y = offset_y + y_from_c;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z = z + c_radius_of_b*head_offset + pivot_length*r33;
     const double axis_z = joint_z + offset_z;
@@ -69,15 +69,14 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     const double r13_by_radius_c = r13/radius_c;
     const double r23_by_radius_c = r23/radius_c;
     const double sin_c_positive = -r23_by_radius_c;
+    const double x_from_c_positive = r13_by_radius_c*x - y*sin_c_positive;
     const double head_offset_times_r33 = head_offset*r33;
     const double radius_c_times_pivot_length = pivot_length*radius_c;
-    const double sum_in_joint_x_positive = radius_c_times_pivot_length - head_offset_times_r33;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_positive = r13_by_radius_c*(x + r13_by_radius_c*sum_in_joint_x_positive)
-        + sin_c_positive*(sum_in_joint_x_positive*sin_c_positive - y);
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x_positive = radius_c_times_pivot_length + x_from_c_positive - head_offset_times_r33;
     const double axis_x_positive = joint_x_positive + offset_x;
-    const double joint_y_positive = r13_by_radius_c*y + x*sin_c_positive;
-    const double axis_y_positive = joint_y_positive + offset_y;
+    const double y_from_c_positive = r13_by_radius_c*y + x*sin_c_positive;
+    const double axis_y_positive = offset_y + y_from_c_positive;
     const double radius_c_times_head_offset = head_offset*radius_c;
     const double z_plus_pivot_length_times_r33 = z + pivot_length*r33;
     /* joint_z from the z equation, which is linear in it */
@@ -87,14 +86,12 @@ void headtable_bc_regular_all(const void *machine, const softkin_lanes *given,
     const double axis_b_positive = offset_b + quotient_in_axis_b_positive;
     const double axis_c_positive = offset_c
         + softkin_lane_angle(sin_c_positive, r13_by_radius_c)*SOFTKIN_RADIAN;
-    const double cos_c_negative = -r13_by_radius_c; /* at a singularity: the angle of the reference */
-    const double sum_in_joint_x_negative = head_offset_times_r33 + radius_c_times_pivot_length;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative
-        + (-y - r23_by_radius_c*sum_in_joint_x_negative)*r23_by_radius_c;
+    const double x_from_c_negative = -x_from_c_positive;
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x_negative = x_from_c_negative - head_offset_times_r33 - radius_c_times_pivot_length;
     const double axis_x_negative = joint_x_negative + offset_x;
-    const double joint_y_negative = -joint_y_positive;
-    const double axis_y_negative = joint_y_negative + offset_y;
+    const double y_from_c_negative = -y_from_c_positive;
+    const double axis_y_negative = offset_y + y_from_c_negative;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset;
     const double axis_z_negative = joint_z_negative + offset_z;

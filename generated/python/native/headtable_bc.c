@@ -153,8 +153,9 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!softkin_are_reasonable((const double[]){x, y, z, ref_b, ref_c}, 5)) {
     return softkin_refuse(why, SOFTKIN_BAD_INPUT, "not given: numbers of reasonable size", "", 0.0, 0);
   }
-  const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
   const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
+  const double radius_c = sqrt(r13*r13 + r23*r23); /* polar coordinates: the radius at angle c */
+  const double c_radius_of_b = radius_c*sign_tilt;
   double cos_c, sin_c;
   if (radius_c > 2e-12) {
     /* polar coordinates: angle c from the r13 and r23 equations */
@@ -167,13 +168,12 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     cos_c = cos(reference_c); /* at a singularity: the angle of the reference */
     sin_c = sin(reference_c);
   }
-  const double c_radius_of_b = radius_c*sign_tilt;
-  const double sum_in_joint_x = c_radius_of_b*k->pivot_length - k->head_offset*r33;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x = cos_c*(x + sum_in_joint_x*cos_c) + sin_c*(sum_in_joint_x*sin_c - y);
+  const double x_from_c = x*cos_c - y*sin_c;
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x = x_from_c + c_radius_of_b*k->pivot_length - k->head_offset*r33;
   const double axis_x = joint_x + k->offset_x;
-  const double joint_y = y*cos_c + x*sin_c;
-  const double axis_y = joint_y + k->offset_y;
+  const double y_from_c = y*cos_c + x*sin_c;
+  const double axis_y = k->offset_y + y_from_c;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z = z + c_radius_of_b*k->head_offset + k->pivot_length*r33;
   const double axis_z = joint_z + k->offset_z;
@@ -423,15 +423,14 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     cos_c_negative = cos_c_positive; /* at a singularity: the angle of the reference */
     sin_c_negative = sin_c_positive;
   }
+  const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
   const double head_offset_times_r33 = k->head_offset*r33;
   const double radius_c_times_pivot_length = k->pivot_length*radius_c;
-  const double sum_in_joint_x_positive = radius_c_times_pivot_length - head_offset_times_r33;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x_positive = cos_c_positive*(x + sum_in_joint_x_positive*cos_c_positive)
-      + sin_c_positive*(sum_in_joint_x_positive*sin_c_positive - y);
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x_positive = radius_c_times_pivot_length + x_from_c_positive - head_offset_times_r33;
   const double axis_x_positive = joint_x_positive + k->offset_x;
-  const double joint_y_positive = y*cos_c_positive + x*sin_c_positive;
-  const double axis_y_positive = joint_y_positive + k->offset_y;
+  const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
+  const double axis_y_positive = k->offset_y + y_from_c_positive;
   const double radius_c_times_head_offset = k->head_offset*radius_c;
   const double z_plus_pivot_length_times_r33 = z + k->pivot_length*r33;
   /* joint_z from the z equation, which is linear in it */
@@ -441,20 +440,20 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_b_positive = k->offset_b + quotient_in_axis_b_positive;
   const double axis_c_positive = k->offset_c
       + softkin_angle_of(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
-  const double sum_in_joint_x_negative = head_offset_times_r33 + radius_c_times_pivot_length;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative
-      + (-y - sum_in_joint_x_negative*sin_c_negative)*sin_c_negative;
-  const double axis_x_negative = joint_x_negative + k->offset_x;
-  double joint_y_negative, axis_c_negative;
+  double x_from_c_negative, y_from_c_negative, axis_c_negative;
   if (radius_c > 2e-12) {
-    joint_y_negative = -joint_y_positive;
+    x_from_c_negative = -x_from_c_positive;
+    y_from_c_negative = -y_from_c_positive;
     axis_c_negative = 180.0 + axis_c_positive;
   } else {
-    joint_y_negative = y*cos_c_negative + x*sin_c_negative;
+    x_from_c_negative = x*cos_c_negative - y*sin_c_negative;
+    y_from_c_negative = y*cos_c_negative + x*sin_c_negative;
     axis_c_negative = k->offset_c + softkin_angle_of(sin_c_negative, cos_c_negative)*SOFTKIN_RADIAN;
   }
-  const double axis_y_negative = joint_y_negative + k->offset_y;
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x_negative = x_from_c_negative - head_offset_times_r33 - radius_c_times_pivot_length;
+  const double axis_x_negative = joint_x_negative + k->offset_x;
+  const double axis_y_negative = k->offset_y + y_from_c_negative;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset;
   const double axis_z_negative = joint_z_negative + k->offset_z;

@@ -54,13 +54,14 @@ void nutatingheadtable_bc_regular(const void *machine, const softkin_lanes *give
     const double length_c = softkin_lane_root(across_c_squared_plus_along_c_squared);
     const double cos_c = along_c/length_c; /* at a singularity: the angle of the reference */
     const double sin_c = across_c/length_c;
-    const double sum_in_joint_x = head_offset*cos_b - pivot_length_times_sin_nutation*sin_b;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x = (x - sum_in_joint_x*cos_c)*cos_c + (-y - sum_in_joint_x*sin_c)*sin_c;
+    const double x_from_c = x*cos_c - y*sin_c;
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x = x_from_c + pivot_length_times_sin_nutation*sin_b - head_offset*cos_b;
     const double axis_x = joint_x + offset_x;
-    const double sum_in_joint_y = product_in_joint_y*cos_b + cos_nutation_times_head_offset*sin_b
-        - product_in_joint_y;
-    const double joint_y = (y - sum_in_joint_y*cos_c)*cos_c + (x - sum_in_joint_y*sin_c)*sin_c;
+    const double y_from_c = y*cos_c + x*sin_c;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y = product_in_joint_y + y_from_c - product_in_joint_y*cos_b
+        - cos_nutation_times_head_offset*sin_b;
     const double axis_y = joint_y + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z = z + head_offset_times_sin_nutation*sin_b
@@ -139,18 +140,17 @@ void nutatingheadtable_bc_regular_all(const void *machine, const softkin_lanes *
     /* at a singularity: the angle of the reference */
     const double cos_c_positive = along_c_positive/length_c_positive;
     const double sin_c_positive = across_c_positive/length_c_positive;
+    const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
     const double cos_b_times_head_offset = head_offset*cos_b;
     const double product_in_joint_x_positive = pivot_length_times_sin_nutation*sin_b_positive;
-    const double sum_in_joint_x_positive = cos_b_times_head_offset - product_in_joint_x_positive;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_positive = (x - sum_in_joint_x_positive*cos_c_positive)*cos_c_positive
-        + (-y - sum_in_joint_x_positive*sin_c_positive)*sin_c_positive;
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x_positive = product_in_joint_x_positive + x_from_c_positive - cos_b_times_head_offset;
     const double axis_x_positive = joint_x_positive + offset_x;
-    const double sum_in_joint_y_positive = cos_c_positive*cos_c_positive + sin_c_positive*sin_c_positive;
+    const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
     const double product_in_joint_y_positive = cos_nutation_times_head_offset*sin_b_positive;
-    const double joint_y_positive = y*cos_c_positive
-        + (sum_in_joint_y_positive - sum_in_joint_y_positive*cos_b)*product_in_joint_y + x*sin_c_positive
-        - product_in_joint_y_positive*sum_in_joint_y_positive;
+    const double sum_in_joint_y_positive = product_in_joint_y - product_in_joint_y*cos_b;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y_positive = sum_in_joint_y_positive + y_from_c_positive - product_in_joint_y_positive;
     const double axis_y_positive = joint_y_positive + offset_y;
     const double product_in_joint_z_positive = head_offset_times_sin_nutation*sin_b_positive;
     const double sum_in_joint_z_positive = z + pivot_length*(cos_b + cos_nutation_squared)
@@ -166,15 +166,13 @@ void nutatingheadtable_bc_regular_all(const void *machine, const softkin_lanes *
     /* at a singularity: the angle of the reference */
     const double cos_c_negative = along_c_negative/length_c_negative;
     const double sin_c_negative = across_c_negative/length_c_negative;
-    const double sum_in_joint_x_negative = cos_b_times_head_offset + product_in_joint_x_positive;
-    /* joint_x and joint_y from the x and y equations, linear in both */
-    const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative
-        + (-y - sum_in_joint_x_negative*sin_c_negative)*sin_c_negative;
+    const double x_from_c_negative = x*cos_c_negative - y*sin_c_negative;
+    /* joint_x from the x_from_c equation, which is linear in it */
+    const double joint_x_negative = x_from_c_negative - cos_b_times_head_offset - product_in_joint_x_positive;
     const double axis_x_negative = joint_x_negative + offset_x;
-    const double sum_in_joint_y_negative = cos_c_negative*cos_c_negative + sin_c_negative*sin_c_negative;
-    const double joint_y_negative = y*cos_c_negative
-        + (sum_in_joint_y_negative - sum_in_joint_y_negative*cos_b)*product_in_joint_y
-        + product_in_joint_y_positive*sum_in_joint_y_negative + x*sin_c_negative;
+    const double y_from_c_negative = y*cos_c_negative + x*sin_c_negative;
+    /* joint_y from the y_from_c equation, which is linear in it */
+    const double joint_y_negative = product_in_joint_y_positive + sum_in_joint_y_positive + y_from_c_negative;
     const double axis_y_negative = joint_y_negative + offset_y;
     /* joint_z from the z equation, which is linear in it */
     const double joint_z_negative = sum_in_joint_z_positive - product_in_joint_z_positive;

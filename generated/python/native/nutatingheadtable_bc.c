@@ -181,11 +181,11 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
   if (!(fabs(cos_b) <= 1.0000000000005)) {
     return softkin_refuse(why, SOFTKIN_UNREACHABLE, "B: out of reach", "", 0.0, 0);
   }
-  const double reach = softkin_root(r13_squared_plus_r23_squared);
   const double sign_tilt = sigma_tilt; /* tilt: +1 positive, -1 negative */
   /* sine squared, times the squared scale */
   const double sine_square_b = one_less_cos_b*one_plus_cos_b;
   const double sin_b = 2.0*softkin_root(sine_square_b)*sign_tilt/fabs(divisor_of_cos_b);
+  const double reach = softkin_root(r13_squared_plus_r23_squared);
   double cos_c, sin_c;
   if (reach > 2e-12) {
     const double arm_along_c = sin_b*k->sin_nutation;
@@ -203,13 +203,14 @@ static softkin_status find_branch(const void *machine, const softkin_frame *fram
     cos_c = cos(reference_c); /* at a singularity: the angle of the reference */
     sin_c = sin(reference_c);
   }
-  const double sum_in_joint_x = k->head_offset*cos_b - k->pivot_length_times_sin_nutation*sin_b;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x = (x - sum_in_joint_x*cos_c)*cos_c + (-y - sum_in_joint_x*sin_c)*sin_c;
+  const double x_from_c = x*cos_c - y*sin_c;
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x = x_from_c + k->pivot_length_times_sin_nutation*sin_b - k->head_offset*cos_b;
   const double axis_x = joint_x + k->offset_x;
-  const double sum_in_joint_y = k->product_in_joint_y*cos_b + k->cos_nutation_times_head_offset*sin_b
-      - k->product_in_joint_y;
-  const double joint_y = (y - sum_in_joint_y*cos_c)*cos_c + (x - sum_in_joint_y*sin_c)*sin_c;
+  const double y_from_c = y*cos_c + x*sin_c;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y = k->product_in_joint_y + y_from_c - k->product_in_joint_y*cos_b
+      - k->cos_nutation_times_head_offset*sin_b;
   const double axis_y = joint_y + k->offset_y;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z = z + k->head_offset_times_sin_nutation*sin_b
@@ -551,18 +552,17 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
     cos_c_negative = cos_c_positive; /* at a singularity: the angle of the reference */
     sin_c_negative = sin_c_positive;
   }
+  const double x_from_c_positive = x*cos_c_positive - y*sin_c_positive;
   const double cos_b_times_head_offset = k->head_offset*cos_b;
   const double product_in_joint_x_positive = k->pivot_length_times_sin_nutation*sin_b_positive;
-  const double sum_in_joint_x_positive = cos_b_times_head_offset - product_in_joint_x_positive;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x_positive = (x - sum_in_joint_x_positive*cos_c_positive)*cos_c_positive
-      + (-y - sum_in_joint_x_positive*sin_c_positive)*sin_c_positive;
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x_positive = product_in_joint_x_positive + x_from_c_positive - cos_b_times_head_offset;
   const double axis_x_positive = joint_x_positive + k->offset_x;
-  const double sum_in_joint_y_positive = cos_c_positive*cos_c_positive + sin_c_positive*sin_c_positive;
+  const double y_from_c_positive = y*cos_c_positive + x*sin_c_positive;
   const double product_in_joint_y_positive = k->cos_nutation_times_head_offset*sin_b_positive;
-  const double joint_y_positive = y*cos_c_positive
-      + (sum_in_joint_y_positive - sum_in_joint_y_positive*cos_b)*k->product_in_joint_y + x*sin_c_positive
-      - product_in_joint_y_positive*sum_in_joint_y_positive;
+  const double sum_in_joint_y_positive = k->product_in_joint_y - k->product_in_joint_y*cos_b;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y_positive = sum_in_joint_y_positive + y_from_c_positive - product_in_joint_y_positive;
   const double axis_y_positive = joint_y_positive + k->offset_y;
   const double product_in_joint_z_positive = k->head_offset_times_sin_nutation*sin_b_positive;
   const double sum_in_joint_z_positive = z + k->pivot_length*(cos_b + k->cos_nutation_squared)
@@ -574,15 +574,13 @@ static bool find_every_branch(const void *machine, const softkin_frame *frame, c
   const double axis_b_positive = k->offset_b + quotient_in_axis_b_positive;
   const double axis_c_positive = k->offset_c
       + softkin_angle_of(sin_c_positive, cos_c_positive)*SOFTKIN_RADIAN;
-  const double sum_in_joint_x_negative = cos_b_times_head_offset + product_in_joint_x_positive;
-  /* joint_x and joint_y from the x and y equations, linear in both */
-  const double joint_x_negative = (x - sum_in_joint_x_negative*cos_c_negative)*cos_c_negative
-      + (-y - sum_in_joint_x_negative*sin_c_negative)*sin_c_negative;
+  const double x_from_c_negative = x*cos_c_negative - y*sin_c_negative;
+  /* joint_x from the x_from_c equation, which is linear in it */
+  const double joint_x_negative = x_from_c_negative - cos_b_times_head_offset - product_in_joint_x_positive;
   const double axis_x_negative = joint_x_negative + k->offset_x;
-  const double sum_in_joint_y_negative = cos_c_negative*cos_c_negative + sin_c_negative*sin_c_negative;
-  const double joint_y_negative = y*cos_c_negative
-      + (sum_in_joint_y_negative - sum_in_joint_y_negative*cos_b)*k->product_in_joint_y
-      + product_in_joint_y_positive*sum_in_joint_y_negative + x*sin_c_negative;
+  const double y_from_c_negative = y*cos_c_negative + x*sin_c_negative;
+  /* joint_y from the y_from_c equation, which is linear in it */
+  const double joint_y_negative = product_in_joint_y_positive + sum_in_joint_y_positive + y_from_c_negative;
   const double axis_y_negative = joint_y_negative + k->offset_y;
   /* joint_z from the z equation, which is linear in it */
   const double joint_z_negative = sum_in_joint_z_positive - product_in_joint_z_positive;
@@ -640,10 +638,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   const double sin_nutation = sin(SOFTKIN_DEGREE*p->nutation);
   const double cos_nutation_squared = cos_nutation*cos_nutation;
   const double cos_nutation_times_sin_nutation = cos_nutation*sin_nutation;
+  const double product_in_joint_y = p->pivot_length*cos_nutation*sin_nutation;
   const double pivot_length_times_cos_nutation_squared = p->pivot_length*cos_nutation*cos_nutation;
   const double one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0*cos_nutation*cos_nutation;
   const double pivot_length_times_sin_nutation = p->pivot_length*sin_nutation;
-  const double product_in_joint_y = p->pivot_length*cos_nutation*sin_nutation;
   const double cos_nutation_times_head_offset = p->head_offset*cos_nutation;
   const double head_offset_times_sin_nutation = p->head_offset*sin_nutation;
   made.lowest_x = window_of_x.lowest;
@@ -671,10 +669,10 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
   made.sin_nutation = sin_nutation;
   made.cos_nutation_squared = cos_nutation_squared;
   made.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation;
+  made.product_in_joint_y = product_in_joint_y;
   made.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared;
   made.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2;
   made.pivot_length_times_sin_nutation = pivot_length_times_sin_nutation;
-  made.product_in_joint_y = product_in_joint_y;
   made.cos_nutation_times_head_offset = cos_nutation_times_head_offset;
   made.head_offset_times_sin_nutation = head_offset_times_sin_nutation;
   made.softkin = (softkin_base){0, p->check_limits != 0.0, false, p->warning_distance, 1e-6};

@@ -91,10 +91,9 @@ typedef struct {
   softkin_ends ends[NUTATINGHEADTABLE_BC_LIMITS];
   double lowest_x, highest_x, lowest_y, highest_y, lowest_z, highest_z, lowest_b, highest_b, mid_b, lowest_c,
       highest_c, mid_c, head_offset, pivot_length, offset_x, offset_y, offset_z, offset_b, offset_c,
-      cos_nutation, sin_nutation, cos_nutation_squared, cos_nutation_times_sin_nutation,
+      cos_nutation, sin_nutation, cos_nutation_squared, cos_nutation_times_sin_nutation, product_in_joint_y,
       pivot_length_times_cos_nutation_squared, one_minus_cos_nutation_squared_times_2,
-      pivot_length_times_sin_nutation, product_in_joint_y, cos_nutation_times_head_offset,
-      head_offset_times_sin_nutation;
+      pivot_length_times_sin_nutation, cos_nutation_times_head_offset, head_offset_times_sin_nutation;
   bool single_b, single_c;
 } nutatingheadtable_bc_machine;
 

@@ -23,8 +23,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 18 multiplications, 0 divisions, 0 square roots, 4 sines
-    inverse: 26 additions, 23 multiplications, 4 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches: 60 additions, 46 multiplications, 8 divisions, 1 square roots, 4 sines
+    inverse: 25 additions, 21 multiplications, 4 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches: 58 additions, 42 multiplications, 8 divisions, 1 square roots, 4 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
@@ -82,7 +82,7 @@ class HeadTableAC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadTable_AC"
-    KEY = "headtable_ac 8fe4dee1416375d3"
+    KEY = "headtable_ac 4d857a9d98831982"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -291,11 +291,12 @@ class HeadTableAC(Mechanism):
             reference_c = (ref_c - offset_c) * DEGREE
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
-        joint_x = x * cos_c - y * sin_c  # joint_x and joint_y from the x and y equations, linear in both
-        axis_x = joint_x + offset_x
+        x_from_c = x * cos_c - y * sin_c
+        axis_x = offset_x + x_from_c
         c_radius_of_a = sigma_tilt * radius_c
-        sum_in_joint_y = c_radius_of_a * pivot_length + head_offset * r33
-        joint_y = (y - sum_in_joint_y * cos_c) * cos_c + (x - sum_in_joint_y * sin_c) * sin_c
+        y_from_c = y * cos_c + x * sin_c
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y = y_from_c - c_radius_of_a * pivot_length - head_offset * r33
         axis_y = joint_y + offset_y
         # joint_z from the z equation, which is linear in it
         joint_z = z + pivot_length * r33 - c_radius_of_a * head_offset

@@ -23,8 +23,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 19 additions, 18 multiplications, 0 divisions, 0 square roots, 4 sines
-    inverse: 26 additions, 23 multiplications, 4 divisions, 1 square roots, 2 sines
-    inverse, all 2 branches: 60 additions, 46 multiplications, 8 divisions, 1 square roots, 4 sines
+    inverse: 25 additions, 21 multiplications, 4 divisions, 1 square roots, 2 sines
+    inverse, all 2 branches: 58 additions, 42 multiplications, 8 divisions, 1 square roots, 4 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 1 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
@@ -82,7 +82,7 @@ class HeadTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_HeadTable_BC"
-    KEY = "headtable_bc 3e6180082d29405d"
+    KEY = "headtable_bc ee2a1fa916665ee9"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -281,6 +281,7 @@ class HeadTableBC(Mechanism):
         if not reasonable(x, y, z, ref_b, ref_c):
             return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
+        c_radius_of_b = sigma_tilt * radius_c
         # at a singularity: the angle of the reference
         if radius_c > 2e-12:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
@@ -291,13 +292,12 @@ class HeadTableBC(Mechanism):
             reference_c = (ref_c - offset_c) * DEGREE
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
-        c_radius_of_b = sigma_tilt * radius_c
-        sum_in_joint_x = c_radius_of_b * pivot_length - head_offset * r33
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = cos_c * (x + sum_in_joint_x * cos_c) + sin_c * (sum_in_joint_x * sin_c - y)
+        x_from_c = x * cos_c - y * sin_c
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x_from_c + c_radius_of_b * pivot_length - head_offset * r33
         axis_x = joint_x + offset_x
-        joint_y = y * cos_c + x * sin_c
-        axis_y = joint_y + offset_y
+        y_from_c = y * cos_c + x * sin_c
+        axis_y = offset_y + y_from_c
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * head_offset + pivot_length * r33
         axis_z = joint_z + offset_z

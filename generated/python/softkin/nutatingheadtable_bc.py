@@ -23,8 +23,8 @@ Singularities:
 The largest number of operations in one call (subtractions count as additions; sines, cosines and arc tangents are
 counted together):
     forward: 29 additions, 38 multiplications, 0 divisions, 0 square roots, 4 sines
-    inverse: 41 additions, 36 multiplications, 7 divisions, 3 square roots, 2 sines
-    inverse, all 2 branches: 85 additions, 71 multiplications, 12 divisions, 5 square roots, 4 sines
+    inverse: 39 additions, 32 multiplications, 7 divisions, 3 square roots, 2 sines
+    inverse, all 2 branches: 81 additions, 63 multiplications, 12 divisions, 5 square roots, 4 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
     a branch at a singular pose, in addition: 0 additions, 0 multiplications, 0 divisions, 0 square roots, 2
     sines
@@ -74,10 +74,10 @@ class Constants:
         sin_nutation = sin(DEGREE * nutation)
         cos_nutation_squared = cos_nutation * cos_nutation
         cos_nutation_times_sin_nutation = cos_nutation * sin_nutation
+        product_in_joint_y = pivot_length * cos_nutation * sin_nutation
         pivot_length_times_cos_nutation_squared = pivot_length * cos_nutation * cos_nutation
         one_minus_cos_nutation_squared_times_2 = 1.0 - 2.0 * cos_nutation * cos_nutation
         pivot_length_times_sin_nutation = pivot_length * sin_nutation
-        product_in_joint_y = pivot_length * cos_nutation * sin_nutation
         cos_nutation_times_head_offset = head_offset * cos_nutation
         head_offset_times_sin_nutation = head_offset * sin_nutation
         self.head_offset, self.pivot_length, self.offset_x = head_offset, pivot_length, offset_x
@@ -85,10 +85,10 @@ class Constants:
         self.cos_nutation, self.sin_nutation = cos_nutation, sin_nutation
         self.cos_nutation_squared = cos_nutation_squared
         self.cos_nutation_times_sin_nutation = cos_nutation_times_sin_nutation
+        self.product_in_joint_y = product_in_joint_y
         self.pivot_length_times_cos_nutation_squared = pivot_length_times_cos_nutation_squared
         self.one_minus_cos_nutation_squared_times_2 = one_minus_cos_nutation_squared_times_2
         self.pivot_length_times_sin_nutation = pivot_length_times_sin_nutation
-        self.product_in_joint_y = product_in_joint_y
         self.cos_nutation_times_head_offset = cos_nutation_times_head_offset
         self.head_offset_times_sin_nutation = head_offset_times_sin_nutation
 
@@ -102,7 +102,7 @@ class NutatingHeadTableBC(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_NutatingHeadTable_BC"
-    KEY = "nutatingheadtable_bc 61e12098d68af4c5"
+    KEY = "nutatingheadtable_bc 9b5ccfe7279b9f64"
     AXES = (
         Axis(name="X", kind="linear", unit="u", meaning="Slide along X: the head against the table", multi_turn=False),
         Axis(name="Y", kind="linear", unit="u", meaning="Slide along Y", multi_turn=False),
@@ -359,9 +359,9 @@ class NutatingHeadTableBC(Mechanism):
         # b: out of reach
         if not (-1.0000000000005 <= cos_b <= 1.0000000000005):
             return Diagnosis(Status.UNREACHABLE, "B: out of reach", 0.0)
-        reach = sqrt(r13_squared_plus_r23_squared) if r13_squared_plus_r23_squared > 0.0 else 0.0
         sine_square_b = one_less_cos_b * one_plus_cos_b  # sine squared, times the squared scale
         sin_b = 2.0 * (sqrt(sine_square_b) if sine_square_b > 0.0 else 0.0) * sigma_tilt / abs(divisor_of_cos_b)
+        reach = sqrt(r13_squared_plus_r23_squared) if r13_squared_plus_r23_squared > 0.0 else 0.0
         # at a singularity: the angle of the reference
         if reach > 2e-12:
             arm_along_c = sin_b * sin_nutation
@@ -379,12 +379,13 @@ class NutatingHeadTableBC(Mechanism):
             reference_c = (ref_c - offset_c) * DEGREE
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
-        sum_in_joint_x = head_offset * cos_b - pivot_length_times_sin_nutation * sin_b
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = (x - sum_in_joint_x * cos_c) * cos_c + (-y - sum_in_joint_x * sin_c) * sin_c
+        x_from_c = x * cos_c - y * sin_c
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x_from_c + pivot_length_times_sin_nutation * sin_b - head_offset * cos_b
         axis_x = joint_x + offset_x
-        sum_in_joint_y = product_in_joint_y * cos_b + cos_nutation_times_head_offset * sin_b - product_in_joint_y
-        joint_y = (y - sum_in_joint_y * cos_c) * cos_c + (x - sum_in_joint_y * sin_c) * sin_c
+        y_from_c = y * cos_c + x * sin_c
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y = product_in_joint_y + y_from_c - product_in_joint_y * cos_b - cos_nutation_times_head_offset * sin_b
         axis_y = joint_y + offset_y
         # joint_z from the z equation, which is linear in it
         joint_z = (

@@ -7,7 +7,21 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Task, Turning, X, Y, Z, length
+from derive.description.loops import FREE_TWIST
+from derive.description.mechanism import (
+    ROTATION,
+    DescriptionError,
+    Mechanism,
+    Task,
+    Turning,
+    X,
+    Y,
+    Z,
+    length,
+    linear,
+    on_plate,
+    ring_rod,
+)
 from derive.description.validate import validate
 from derive.form.inner_names import with_symbols
 from derive.ir.constants import DEGREE
@@ -17,7 +31,7 @@ from derive.ir.symbols import real
 from derive.kinematics.build import build
 from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
 from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD
-from derive.plate.stated_rods import with_positive_lengths, with_stated_rods
+from derive.plate.stated_rods import with_free_twist, with_positive_lengths, with_stated_rods
 from tests.mechanisms import kinematics_of, named
 from tests.unit.kinematics.test_turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
@@ -25,6 +39,7 @@ MACHINES = {
     **{name: own for name, (own, _) in TURNING_INVENTIONS.items()},
     **{name: named(name) for name in ("Softkin_Planar_3RRR", "Softkin_Hexaglide", "Kin_Hexapod")},
 }
+RING, STRUT = length("ring_radius", "Ring", nominal=80.0), linear("L1", "Strut", domain=(0.0, 1e9), nominal=600.0)
 QUICK = 20.0
 """Seconds, in which anything is refused."""
 
@@ -49,6 +64,18 @@ def test_equations_that_are_rods_are_read_as_these(name: str) -> None:
         rest = {s: sp.Rational(5, 3) for s in (one.equation.free_symbols | other.equation.free_symbols) - set(values)}
         difference = (one.equation - other.equation).subs(values | rest)
         assert abs(sp.N(difference)) <= 1e-9 * (1.0 + abs(sp.N(other.equation.subs(values | rest))))
+
+
+@pytest.mark.parametrize("radius", [0, RING, -RING / 2])
+def test_an_equation_in_the_frame_of_the_plate_is_read_too(radius: sp.Expr) -> None:
+    """A strut that ends on a ring around the z axis of the plate, on its near or far side, or on the axis itself."""
+    across, aside, along = ROTATION.T * sp.Matrix([300 - X, 40 - Y, 900 - Z])
+    apart = sp.sqrt(across**2 + aside**2)
+    equation = -3 * ((apart - radius) ** 2 + (along - 7) ** 2 - STRUT.symbol**2)
+    machine = Mechanism("Spindle", (STRUT,), Task("xyz", Turning.DIRECTION), parameters=(RING,), closure=(equation,))
+    (read,) = with_stated_rods(machine).rods
+    assert read == ring_rod("1", (300, 40, 900), on_plate(0, 0, 7), radius, STRUT) if radius else read.ring is None
+    assert FREE_TWIST in with_free_twist(with_stated_rods(machine)).guides
 
 
 @pytest.mark.long

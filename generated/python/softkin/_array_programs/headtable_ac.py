@@ -90,11 +90,12 @@ class ArrayPrograms(Programs):
         sin_c = across_c / radius_c
         # at a singularity: the angle of the reference
         cos_c, sin_c = elsewhere(radius_c > 2e-12, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
-        joint_x = x * cos_c - y * sin_c  # joint_x and joint_y from the x and y equations, linear in both
-        axis_x = joint_x + k.offset_x
+        x_from_c = x * cos_c - y * sin_c
+        axis_x = k.offset_x + x_from_c
         c_radius_of_a = sigma_tilt * radius_c
-        sum_in_joint_y = c_radius_of_a * k.pivot_length + k.head_offset * r33
-        joint_y = (y - sum_in_joint_y * cos_c) * cos_c + (x - sum_in_joint_y * sin_c) * sin_c
+        y_from_c = y * cos_c + x * sin_c
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y = y_from_c - c_radius_of_a * k.pivot_length - k.head_offset * r33
         axis_y = joint_y + k.offset_y
         # joint_z from the z equation, which is linear in it
         joint_z = z + k.pivot_length * r33 - c_radius_of_a * k.head_offset

@@ -77,6 +77,7 @@ class ArrayPrograms(Programs):
         # inputs must be numbers, and of reasonable size
         require(status, reasonable(ref_b, ref_c, x, y, z), Status.BAD_INPUT)
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
+        c_radius_of_b = sigma_tilt * radius_c
 
         def elsewhere_cos_c(ref_c: Real) -> Reals:
             reference_c = (ref_c - k.offset_c) * DEGREE
@@ -90,13 +91,12 @@ class ArrayPrograms(Programs):
         sin_c = across_c / radius_c
         # at a singularity: the angle of the reference
         cos_c, sin_c = elsewhere(radius_c > 2e-12, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
-        c_radius_of_b = sigma_tilt * radius_c
-        sum_in_joint_x = c_radius_of_b * k.pivot_length - k.head_offset * r33
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = cos_c * (x + sum_in_joint_x * cos_c) + sin_c * (sum_in_joint_x * sin_c - y)
+        x_from_c = x * cos_c - y * sin_c
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x_from_c + c_radius_of_b * k.pivot_length - k.head_offset * r33
         axis_x = joint_x + k.offset_x
-        joint_y = y * cos_c + x * sin_c
-        axis_y = joint_y + k.offset_y
+        y_from_c = y * cos_c + x * sin_c
+        axis_y = k.offset_y + y_from_c
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * k.head_offset + k.pivot_length * r33
         axis_z = joint_z + k.offset_z

@@ -100,9 +100,9 @@ class ArrayPrograms(Programs):
         sum_b = one_less_cos_b + one_plus_cos_b  # sum of both, twice the scale: cosine² + sine² is then 1
         divisor_of_cos_b = select(absolute(sum_b) > 0.0, sum_b, 1.0)
         cos_b = (one_plus_cos_b - one_less_cos_b) / divisor_of_cos_b
-        reach = root(r13_squared_plus_r23_squared)
         sine_square_b = one_less_cos_b * one_plus_cos_b  # sine squared, times the squared scale
         sin_b = 2.0 * root(sine_square_b) * sigma_tilt / absolute(divisor_of_cos_b)
+        reach = root(r13_squared_plus_r23_squared)
 
         def elsewhere_cos_c(ref_c: Real) -> Reals:
             reference_c = (ref_c - k.offset_c) * DEGREE
@@ -121,12 +121,15 @@ class ArrayPrograms(Programs):
         sin_c = across_c / length_c
         # at a singularity: the angle of the reference
         cos_c, sin_c = elsewhere(reach > 2e-12, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
-        sum_in_joint_x = k.head_offset * cos_b - k.pivot_length_times_sin_nutation * sin_b
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = (x - sum_in_joint_x * cos_c) * cos_c + (-y - sum_in_joint_x * sin_c) * sin_c
+        x_from_c = x * cos_c - y * sin_c
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x_from_c + k.pivot_length_times_sin_nutation * sin_b - k.head_offset * cos_b
         axis_x = joint_x + k.offset_x
-        sum_in_joint_y = k.product_in_joint_y * cos_b + k.cos_nutation_times_head_offset * sin_b - k.product_in_joint_y
-        joint_y = (y - sum_in_joint_y * cos_c) * cos_c + (x - sum_in_joint_y * sin_c) * sin_c
+        y_from_c = y * cos_c + x * sin_c
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y = (
+            k.product_in_joint_y + y_from_c - k.product_in_joint_y * cos_b - k.cos_nutation_times_head_offset * sin_b
+        )
         axis_y = joint_y + k.offset_y
         # joint_z from the z equation, which is linear in it
         joint_z = (

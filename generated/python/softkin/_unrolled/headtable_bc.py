@@ -31,56 +31,51 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
-        # at a singularity: the angle of the reference
-        if radius_c > 2e-12:
-            cos_c_positive = r13 / radius_c
-            sin_c_positive = -(r23 / radius_c)
-            cos_c_negative = -cos_c_positive
-            sin_c_negative = -sin_c_positive
-        else:
-            reference_c = (ref_c - offset_c) * DEGREE
-            cos_c_positive = cos(reference_c)
-            sin_c_positive = sin(reference_c)
-            cos_c_negative = cos_c_positive
-            sin_c_negative = sin_c_positive
         head_offset_times_r33 = head_offset * r33
         radius_c_times_pivot_length = pivot_length * radius_c
-        sum_in_joint_x = radius_c_times_pivot_length - head_offset_times_r33
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_positive = cos_c_positive * (x + sum_in_joint_x * cos_c_positive) + sin_c_positive * (
-            sum_in_joint_x * sin_c_positive - y
-        )
-        joint_y_positive = y * cos_c_positive + x * sin_c_positive
         radius_c_times_head_offset = head_offset * radius_c
         z_plus_pivot_length_times_r33 = z + pivot_length * r33
         # joint_z from the z equation, which is linear in it
         joint_z_positive = radius_c_times_head_offset + z_plus_pivot_length_times_r33
         quotient_in_axis_b = arctan2(radius_c, r33) * RADIAN
-        axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
-        sum_in_joint_x = head_offset_times_r33 + radius_c_times_pivot_length
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_negative = (x - sum_in_joint_x * cos_c_negative) * cos_c_negative + (
-            -y - sum_in_joint_x * sin_c_negative
-        ) * sin_c_negative
         if radius_c > 2e-12:
-            joint_y_negative = -joint_y_positive
+            cos_c_positive = r13 / radius_c  # at a singularity: the angle of the reference
+            sin_c_positive = -(r23 / radius_c)
+            x_from_c_positive = x * cos_c_positive - y * sin_c_positive
+            # joint_x from the x_from_c equation, which is linear in it
+            joint_x = radius_c_times_pivot_length + x_from_c_positive - head_offset_times_r33
+            axis_x = joint_x + offset_x
+            y_from_c_positive = y * cos_c_positive + x * sin_c_positive
+            axis_y = offset_y + y_from_c_positive
+            axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
+            x_from_c_negative = -x_from_c_positive
+            y_from_c_negative = -y_from_c_positive
             axis_c_negative = 180.0 + axis_c_positive
         else:
-            joint_y_negative = y * cos_c_negative + x * sin_c_negative
+            reference_c = (ref_c - offset_c) * DEGREE
+            cos_c_positive = cos(reference_c)  # at a singularity: the angle of the reference
+            sin_c_positive = sin(reference_c)
+            cos_c_negative = cos_c_positive  # at a singularity: the angle of the reference
+            sin_c_negative = sin_c_positive
+            x_from_c_positive = x * cos_c_positive - y * sin_c_positive
+            # joint_x from the x_from_c equation, which is linear in it
+            joint_x = radius_c_times_pivot_length + x_from_c_positive - head_offset_times_r33
+            axis_x = joint_x + offset_x
+            y_from_c_positive = y * cos_c_positive + x * sin_c_positive
+            axis_y = offset_y + y_from_c_positive
+            axis_c_positive = offset_c + arctan2(sin_c_positive, cos_c_positive) * RADIAN
+            x_from_c_negative = x * cos_c_negative - y * sin_c_negative
+            y_from_c_negative = y * cos_c_negative + x * sin_c_negative
             axis_c_negative = offset_c + arctan2(sin_c_negative, cos_c_negative) * RADIAN
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x_from_c_negative - head_offset_times_r33 - radius_c_times_pivot_length
         # joint_z from the z equation, which is linear in it
         joint_z_negative = z_plus_pivot_length_times_r33 - radius_c_times_head_offset
         return (
+            (axis_x, axis_y, joint_z_positive + offset_z, offset_b + quotient_in_axis_b, axis_c_positive),
             (
-                joint_x_positive + offset_x,
-                joint_y_positive + offset_y,
-                joint_z_positive + offset_z,
-                offset_b + quotient_in_axis_b,
-                axis_c_positive,
-            ),
-            (
-                joint_x_negative + offset_x,
-                joint_y_negative + offset_y,
+                joint_x + offset_x,
+                offset_y + y_from_c_negative,
                 joint_z_negative + offset_z,
                 offset_b - quotient_in_axis_b,
                 axis_c_negative,
@@ -93,6 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_tilt,) = signs
         _, _, _, _, ref_c = 5 * (0.0,) if reference is None else reference
         radius_c = sqrt(r13 * r13 + r23 * r23)  # polar coordinates: the radius at angle c
+        c_radius_of_b = sigma_tilt * radius_c
         # at a singularity: the angle of the reference
         if radius_c > 2e-12:
             along_c = sigma_tilt * r13  # polar coordinates: angle c from the r13 and r23 equations
@@ -102,10 +98,8 @@ def unrolled(k: Constants) -> Unrolled:
             reference_c = (ref_c - offset_c) * DEGREE
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
-        c_radius_of_b = sigma_tilt * radius_c
-        sum_in_joint_x = c_radius_of_b * pivot_length - head_offset * r33
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = cos_c * (x + sum_in_joint_x * cos_c) + sin_c * (sum_in_joint_x * sin_c - y)
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x * cos_c - y * sin_c + c_radius_of_b * pivot_length - head_offset * r33
         # joint_z from the z equation, which is linear in it
         joint_z = z + c_radius_of_b * head_offset + pivot_length * r33
         if no_offsets:

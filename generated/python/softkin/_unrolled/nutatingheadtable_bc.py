@@ -80,37 +80,22 @@ def unrolled(k: Constants) -> Unrolled:
             sin_c_negative = sin_c_positive
         cos_b_times_head_offset = head_offset * cos_b
         product_in_joint_x = pivot_length_times_sin_nutation * sin_b
-        sum_in_joint_x = cos_b_times_head_offset - product_in_joint_x
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_positive = (x - sum_in_joint_x * cos_c_positive) * cos_c_positive + (
-            -y - sum_in_joint_x * sin_c_positive
-        ) * sin_c_positive
-        sum_in_joint_y = cos_c_positive * cos_c_positive + sin_c_positive * sin_c_positive
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x_positive = product_in_joint_x + (x * cos_c_positive - y * sin_c_positive) - cos_b_times_head_offset
         product_in_joint_y_positive = cos_nutation_times_head_offset * sin_b
-        joint_y_positive = (
-            y * cos_c_positive
-            + (sum_in_joint_y - sum_in_joint_y * cos_b) * product_in_joint_y
-            + x * sin_c_positive
-            - product_in_joint_y_positive * sum_in_joint_y
-        )
+        sum_in_joint_y = product_in_joint_y - product_in_joint_y * cos_b
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y_positive = sum_in_joint_y + (y * cos_c_positive + x * sin_c_positive) - product_in_joint_y_positive
         product_in_joint_z = head_offset_times_sin_nutation * sin_b
         sum_in_joint_z = (
             z + pivot_length * (cos_b + cos_nutation_squared) - pivot_length_times_cos_nutation_squared * cos_b
         )
         joint_z_positive = product_in_joint_z + sum_in_joint_z  # joint_z from the z equation, which is linear in it
         quotient_in_axis_b = arctan2(sin_b, cos_b) * RADIAN
-        sum_in_joint_x = cos_b_times_head_offset + product_in_joint_x
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x_negative = (x - sum_in_joint_x * cos_c_negative) * cos_c_negative + (
-            -y - sum_in_joint_x * sin_c_negative
-        ) * sin_c_negative
-        sum_in_joint_y = cos_c_negative * cos_c_negative + sin_c_negative * sin_c_negative
-        joint_y_negative = (
-            y * cos_c_negative
-            + (sum_in_joint_y - sum_in_joint_y * cos_b) * product_in_joint_y
-            + product_in_joint_y_positive * sum_in_joint_y
-            + x * sin_c_negative
-        )
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x_negative = x * cos_c_negative - y * sin_c_negative - cos_b_times_head_offset - product_in_joint_x
+        # joint_y from the y_from_c equation, which is linear in it
+        joint_y_negative = product_in_joint_y_positive + sum_in_joint_y + (y * cos_c_negative + x * sin_c_negative)
         joint_z_negative = sum_in_joint_z - product_in_joint_z  # joint_z from the z equation, which is linear in it
         return (
             (
@@ -144,9 +129,9 @@ def unrolled(k: Constants) -> Unrolled:
         # b: out of reach
         if not (-1.0000000000005 <= cos_b <= 1.0000000000005):
             return None
-        reach = sqrt(r13_squared_plus_r23_squared) if r13_squared_plus_r23_squared > 0.0 else 0.0
         sine_square_b = one_less_cos_b * one_plus_cos_b  # sine squared, times the squared scale
         sin_b = 2.0 * (sqrt(sine_square_b) if sine_square_b > 0.0 else 0.0) * sigma_tilt / abs(divisor_of_cos_b)
+        reach = sqrt(r13_squared_plus_r23_squared) if r13_squared_plus_r23_squared > 0.0 else 0.0
         # at a singularity: the angle of the reference
         if reach > 2e-12:
             arm_along_c = sin_b * sin_nutation
@@ -164,15 +149,14 @@ def unrolled(k: Constants) -> Unrolled:
             reference_c = (ref_c - offset_c) * DEGREE
             cos_c = cos(reference_c)
             sin_c = sin(reference_c)
-        sum_in_joint_x = head_offset * cos_b - pivot_length_times_sin_nutation * sin_b
-        # joint_x and joint_y from the x and y equations, linear in both
-        joint_x = (x - sum_in_joint_x * cos_c) * cos_c + (-y - sum_in_joint_x * sin_c) * sin_c
-        cos_c_squared_plus_sin_c_squared = cos_c * cos_c + sin_c * sin_c
+        # joint_x from the x_from_c equation, which is linear in it
+        joint_x = x * cos_c - y * sin_c + pivot_length_times_sin_nutation * sin_b - head_offset * cos_b
+        # joint_y from the y_from_c equation, which is linear in it
         joint_y = (
-            y * cos_c
-            + (cos_c_squared_plus_sin_c_squared - cos_b * cos_c_squared_plus_sin_c_squared) * product_in_joint_y
-            + x * sin_c
-            - cos_c_squared_plus_sin_c_squared * cos_nutation_times_head_offset * sin_b
+            product_in_joint_y
+            + (y * cos_c + x * sin_c)
+            - product_in_joint_y * cos_b
+            - cos_nutation_times_head_offset * sin_b
         )
         # joint_z from the z equation, which is linear in it
         joint_z = (
