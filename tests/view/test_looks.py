@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import softkin
 
+from tests.catalogue.platform_poses import points_of
 from tests.mechanisms import catalogue, named
 from tests.view.pages import ARM, Seen, confirm, frame_of, robot_of
-from tests.view.test_poses import points_of
 
 pytestmark = pytest.mark.slow
 EACH = pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue()])
@@ -19,7 +19,7 @@ SCARA = "Kin_Scara3_Z"
 def test_all_poses_of_a_platform(seen: Seen) -> None:
     """Each leg has its length in every pose that is shown; how they were found is said; a click shows one alone."""
     found = seen["poses"]
-    base, platform = (points_of(found["parameters"], side, "xyz", 6) for side in ("base", "platform"))
+    base, platform = (points_of(found["parameters"], side, "xyz") for side in ("base", "platform"))
     frames = found["all"]["frames"]
     for frame in frames:
         ends = np.array(frame["position"]) + platform @ np.array(frame["rotation"]).T
