@@ -6,7 +6,8 @@ length of belt that runs past each motor; no sign of a machine is assumed.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 import sympy as sp
@@ -21,6 +22,7 @@ the two strands of a belt along a beam."""
 _STEP = 0.01
 _STILL = 1e-6
 
+_Drive = TypeVar("_Drive")
 Wheel = tuple[Array, float, float]
 """A wheel that the belt goes around: its centre, and the angles in degrees at which the belt arrives and leaves."""
 
@@ -74,27 +76,64 @@ def belt_of(layout: str, size: float, axes: Sequence[Array], drives: dict[sp.Sym
     motors = _LAYOUTS[layout][1]
     plane = size * np.stack(axes, axis=1)
     normal = np.cross(axes[0], axes[1])
-    rates = {name: _past_motors(layout, np.array([move @ axis for axis in axes])) for name, move in drives.items()}
+    moves = {name: np.array([move @ axis for axis in axes]) for name, move in drives.items()}
     found = []
-    for number, index in enumerate(motors):
-        driving = [name for name, rate in rates.items() if abs(rate[number]) > _STILL]
-        if len(driving) != 1:
-            raise DescriptionError(f"one drive turns each motor of a belt in {layout} layout, and here not")
+    for index, (name, rate) in zip(motors, _drives_of_motors(layout, moves), strict=True):
         centre, arrives, leaves = wheels[index]
-        sense = float(np.sign(rates[driving[0]][number] * (leaves - arrives)))
-        found.append(Motor(driving[0], point(plane @ centre), point(sense * normal)))
+        found.append(Motor(name, point(plane @ centre), point(float(np.sign(rate * (leaves - arrives))) * normal)))
     return Belt(
         path=tuple(point(plane @ p) for p in _path(wheels, ends)),
         wheels=tuple(point(plane @ centre) for k, (centre, _, _) in enumerate(wheels) if k not in motors),
         motors=tuple(found),
         radius=size * _RADIUS,
         normal=point(normal),
-        frame=tuple(Segment(point(plane @ a), point(plane @ b), body) for a, b, body in _frame(layout)),
+        frame=tuple(Segment(point(plane @ a), point(plane @ b), body) for a, b, body in _frame(layout, 0.0, 0.0)),
         tips=(
             point(plane @ _at(_WIDE if layout == "H" else 0.6 * _WIDE, 0.0)),
             point(plane @ _at(_WIDE if layout == "H" else 0.0, _HIGH)),
         ),
     )
+
+
+def _drives_of_motors(layout: str, moves: Mapping[_Drive, Array]) -> Iterator[tuple[_Drive, float]]:
+    """For each motor its drive, and the length of belt that a unit of it pulls past the motor."""
+    rates = {name: _past_motors(layout, move) for name, move in moves.items()}
+    for number in range(len(_LAYOUTS[layout][1])):
+        driving = [(name, rate[number]) for name, rate in rates.items() if abs(rate[number]) > _STILL]
+        if len(driving) != 1:
+            raise DescriptionError(f"one drive turns each motor of a belt in {layout} layout, and here not")
+        yield driving[0]
+
+
+def layout_of(layout: str, moves: Mapping[str, Array]) -> dict[str, Any]:
+    """The belt and its frame at any place of the carriage, as plain data: for a frame of size one.
+
+    `moves` is how a unit of each drive moves the carriage along both directions; a wheel has the name of its drive.
+    A point is three pairs: where it is at the place (0, 0), and how it moves with both coordinates of the place. "held"
+    is the carriage, or the end of the arm, at the place (0, 0).
+    """
+    of, motors = _LAYOUTS[layout]
+    names = dict(zip(motors, (name for name, _ in _drives_of_motors(layout, moves)), strict=True))
+    found, frames = [of(*place) for place in _PLACES], [_frame(layout, *place) for place in _PLACES]
+    wheels = [
+        {"at": _moving([one[k][0] for one, _ in found]), "from": arrives, "to": leaves, "joint": names.get(k, "")}
+        for k, (_, arrives, leaves) in enumerate(found[0][0])
+    ]
+    frame = [
+        {"ends": [_moving([one[k][0] for one in frames]), _moving([one[k][1] for one in frames])], "body": body.value}
+        for k, (_, _, body) in enumerate(frames[0])
+    ]
+    ends = [_moving([both[k] for _, both in found]) for k in (0, 1)]
+    held = _at(0.0, 0.0) if layout == "H" else _at(0.0, -_HIGH)
+    return {"wheels": wheels, "ends": ends, "frame": frame, "held": held.tolist(), "radius": _RADIUS}
+
+
+_PLACES = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+
+
+def _moving(points: Sequence[Array]) -> list[list[float]]:
+    """A point at each of `_PLACES`: where it is at the first, and how far it moves to the others."""
+    return [np.round(p, 12).tolist() for p in (points[0], points[1] - points[0], points[2] - points[0])]
 
 
 def _past_motors(layout: str, rate: Array) -> tuple[float, float]:
@@ -125,10 +164,10 @@ def _path(wheels: Sequence[Wheel], ends: tuple[Array, Array]) -> list[Array]:
     return [*path, ends[1]]
 
 
-def _frame(layout: str) -> list[tuple[Array, Array, Body]]:
+def _frame(layout: str, x: float, y: float) -> list[tuple[Array, Array, Body]]:
     """The fixed rails and the beam or arm that moves on them."""
     w, h = _WIDE, _HIGH
     if layout == "H":
-        rails = [(_at(x, -h), _at(x, h), Body.BASE) for x in (-w, w)]
-        return [*rails, (_at(-w, 0.0), _at(w, 0.0), Body.LINK)]
-    return [(_at(-w, 0.0), _at(w, 0.0), Body.BASE), (_at(0.0, -h), _at(0.0, h), Body.LINK)]
+        rails = [(_at(side, -h), _at(side, h), Body.BASE) for side in (-w, w)]
+        return [*rails, (_at(-w, y), _at(w, y), Body.LINK)]
+    return [(_at(-w, 0.0), _at(w, 0.0), Body.BASE), (_at(x, y - h), _at(x, y + h), Body.LINK)]

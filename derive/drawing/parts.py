@@ -10,9 +10,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
+import numpy as np
 import sympy as sp
 
 from derive.description.mechanism import DescriptionError, Joint, Mechanism, X, Y, Z
+from derive.drawing.belts import layout_of
 from derive.drawing.loop import bars_of, is_held_by_parallelograms
 from derive.drawing.pins import pins_of
 from derive.equations.axes import joint_lets
@@ -136,7 +138,20 @@ def _chain(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
         factors.append({"motion": factor.motion.value, "axis": factor.axis, "joints": names, "amount": at})
     shape: dict[str, Any] = {"kind": "chain", "factors": factors}
     loops = [part for joint in mechanism.joints for part in _loops_of(joint, factors, values)]
-    return shape | ({"loops": loops} if loops else {})
+    return shape | ({"loops": loops} if loops else {}) | ({"belt": _belt(mechanism, chain)} if mechanism.belt else {})
+
+
+def _belt(mechanism: Mechanism, chain: Chain) -> dict[str, Any]:
+    """The layout of the belt, and the numbers of the two factors that its drives share."""
+    assert mechanism.belt is not None
+    drives = {j.name: j.symbol for j in mechanism.joints}
+    shared = [k for k, f in enumerate(chain.factors) if len(f.amount.free_symbols & {*drives.values()}) > 1][:2]
+    nominal = {p.symbol: p.nominal for p in mechanism.parameters}
+    slopes = {
+        name: np.array([float(sp.diff(chain.factors[k].amount, drive).xreplace(nominal)) for k in shared])
+        for name, drive in drives.items()
+    }
+    return layout_of(mechanism.belt, {name: way for name, way in slopes.items() if way.any()}) | {"slides": shared}
 
 
 def _loops_of(joint: Joint, factors: Sequence[Mapping[str, Any]], values: _Values) -> Iterator[dict[str, Any]]:
@@ -150,7 +165,8 @@ def _loops_of(joint: Joint, factors: Sequence[Mapping[str, Any]], values: _Value
         pins = {"start": pins_of(loop.start), "tip": pins_of(loop.tip)}
         named = {word: [values.point(p) for p in some] for word, some in pins.items()}
         driven = joint.name if number == 0 and not loop.turns[1] else ""
-        yield {"name": f"rod of {loop.name}", "joints": [joint.name], "at": at, "cylinder": driven} | named
+        said = {"name": f"rod of {loop.name}", "joints": [joint.name], "at": at, "cylinder": driven}
+        yield said | named | {"isFirst": number == 0}
 
 
 def _loop(mechanism: Mechanism, values: _Values) -> dict[str, Any]:

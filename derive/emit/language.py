@@ -131,6 +131,11 @@ _NUMBERS = {
 """Bounds, tolerances, and bounds of iterations."""
 CONSTANTS: dict[str, float | tuple[float, ...]] = dict(sorted(_NUMBERS.items()))
 """The constants by their names in the runtimes."""
+OF_POSES: dict[str, float] = {
+    **{name: vars(constants)[name] for name in ("FEWEST_STARTS", "MOST_STARTS", "OFTEN")},
+    "SAME_POSE": float(constants.SAME_POSE),
+}
+"""Those of the search for all poses of a platform, which Python and the viewer make."""
 _MEANINGS = {
     Status.OK: "no error",
     Status.NOT_INITIALIZED: "a parameter is not allowed",

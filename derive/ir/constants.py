@@ -67,6 +67,14 @@ DOUBTFUL = sp.Float("1e-2")
 """A step whose margin is at most this may have lost digits that a later step needs; there its angle is set free."""
 NEARLY_FREE = sp.Float("1e-5")
 """The same where the nearest value of a free angle is sought ever closer: there more angles are determined."""
+FEWEST_STARTS = 1000
+"""So often at least the search for all poses of a platform begins, in each assembly mode."""
+MOST_STARTS = 20000
+"""And so often at most: it ends earlier where it has come to every pose often enough."""
+OFTEN = 4
+"""It has come often enough to a pose to which it has come so often."""
+SAME_POSE = sp.Float("1e-5")
+"""Poses are one where they differ by less, of the size of the machine and of the entries of a rotation."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start of which one step leaves least."""
 REFINED = 52

@@ -1,11 +1,11 @@
 /** A machine as solid bodies: rods along its lines, a barrel for every turn, a carriage for every slide, plates, the tool. */
 
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial,
-  SphereGeometry, Vector3,
+  BoxGeometry, BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Matrix4, Mesh,
+  MeshLambertMaterial, SphereGeometry, Vector3,
 } from "three";
 import { groundOf } from "./ground.js";
-import { shapesOf } from "./shapes.js";
+import { motorPlace, shapesOf } from "./shapes.js";
 import { extentOf, levelAlong } from "./space.js";
 
 const ROUND = new CylinderGeometry(1, 1, 1, 24);
@@ -26,15 +26,21 @@ const CARRIAGE = [0.07, 0.09, 0.05];
 const QUILL = 0.022;
 const LEG = 0.016;
 const CYLINDER = 0.017;
+/** A motor, how far it stands from a joint beside which it is, and that of a belt. */
+const MOTOR = { radius: 0.026, length: 0.055, aside: 0.07, cap: 0.7 };
+/** A belt's width, its height above the frame, and the carriage that holds its ends. */
+const BELT = { width: 0.012, thick: 0.003, above: 0.03 };
 const LARGEST_PLATE = 24;
 /** A ghost is thinner, so that it does not shine through the machine where both are at one place. */
 const GHOST = 0.86;
 
 export const COLOURS = {
-  light: { base: 0x8b95a3, link: 0xe08a2e, rod: 0x5b6b80, plate: 0x3f7fbf, joint: 0x39424f, tool: 0x1f9d61, ghost: 0x4d7cc9, assembly: 0x9556c4 },
-  dark: { base: 0x6d7886, link: 0xe59a45, rod: 0x9fb0c6, plate: 0x5b9be0, joint: 0xb6c0cc, tool: 0x35c47f, ghost: 0x86aef0, assembly: 0xc79bef },
+  light: { base: 0x8b95a3, link: 0xe08a2e, rod: 0x5b6b80, plate: 0x3f7fbf, joint: 0x39424f, motor: 0x2f4a75, belt: 0x15181c, tool: 0x1f9d61, ghost: 0x4d7cc9, assembly: 0x9556c4 },
+  dark: { base: 0x6d7886, link: 0xe59a45, rod: 0x9fb0c6, plate: 0x5b9be0, joint: 0xb6c0cc, motor: 0x7f9bd0, belt: 0xdde3ea, tool: 0x35c47f, ghost: 0x86aef0, assembly: 0xc79bef },
 };
 export const STATES = { good: null, near: 0xe0a100, singular: 0xd83a34, refused: 0xd83a34 };
+
+const KINDS = ["base", "link", "rod", "plate", "joint", "motor", "belt", "tool"];
 
 /** One figure. `solid`: the machine itself; else a ghost, which is seen through. */
 export class Figure {
@@ -47,7 +53,7 @@ export class Figure {
     this.group = new Group();
     Object.assign(this, { isGhost, ghost });
     this.materials = {};
-    for (const kind of ["base", "link", "rod", "plate", "joint", "tool", "refused"]) {
+    for (const kind of [...KINDS, "refused"]) {
       this.materials[kind] = new MeshLambertMaterial({
         transparent: isGhost, opacity: isGhost ? 0.2 : 1, depthWrite: !isGhost, side: DoubleSide, forceSinglePass: true,
         polygonOffset: isGhost, polygonOffsetFactor: 2, polygonOffsetUnits: 8,
@@ -59,7 +65,7 @@ export class Figure {
 
   /** The colours of a theme. */
   paint(colours) {
-    for (const kind of ["base", "link", "rod", "plate", "joint", "tool"]) {
+    for (const kind of KINDS) {
       this.materials[kind].color.set(colours[this.isGhost ? this.ghost : kind]);
     }
     this.colours = colours;
@@ -94,7 +100,12 @@ export class Figure {
         if (body.kind === "rod") this.#cylinder(body, joint, size, refused(body));
         else this.#joint(joint, shapes[scene.joints.indexOf(joint)], size, refused(body), scene);
       }
+      if (this.isGhost) return;
+      for (const motor of scene.motors.filter((one) => one.body === i)) {
+        this.#motor(motor, shapes[scene.joints.findIndex((joint) => joint.body === i)], size, scene);
+      }
     });
+    if (scene.belt) this.#belt(scene.belt, size, scene);
     this.#plates.forEach((plate, i) => { plate.visible = i < plates; });
     for (const [geometry, meshes] of this.#pools) {
       const count = this.#used.get(geometry) ?? 0;
@@ -171,6 +182,7 @@ export class Figure {
       this.#along(ROUND, at.clone().sub(half), at.clone().add(half), thin * radius, kind);
       return;
     }
+    if (scene.belt && joint.joints.length > 1) return;
     const from = at.clone().addScaledVector(axis, -joint.travel);
     if (shape === "quill") this.#along(ROUND, from, at, thin * QUILL, kind);
     else this.#rail(from, at, axis, thin, joint.body === 1 && !scene.bodies[0].lines.length, scene);
@@ -180,14 +192,69 @@ export class Figure {
     block.scale.set(...CARRIAGE.map((part) => thin * part));
   }
 
+  /** A motor at an end of the axis that it turns, or beside it. */
+  #motor(motor, shape, size, scene) {
+    const { axis, isAside } = motorPlace(scene, motor);
+    const [at, out] = [new Vector3(...motor.at), new Vector3(...axis)];
+    const length = ({ table: TABLE, trunnion: TRUNNION }[shape] ?? BARREL).length;
+    const along = isAside ? new Vector3(...motor.axis) : out;
+    const start = isAside ? at.addScaledVector(out, size * MOTOR.aside).addScaledVector(along, -0.5 * size * MOTOR.length) : at.addScaledVector(out, 0.5 * size * length);
+    this.#drive(start, along, size);
+  }
+
+  /** The body of a motor, and the cap at its end. */
+  #drive(start, along, size) {
+    const end = start.clone().addScaledVector(along, size * MOTOR.length);
+    this.#along(ROUND, start, end, size * MOTOR.radius, "motor");
+    this.#along(ROUND, end, end.clone().addScaledVector(along, 0.2 * size * MOTOR.length), size * MOTOR.radius * MOTOR.cap, "joint");
+  }
+
+  /** A belt on its wheels above its frame, the frame on legs, the motors below, and the carriage. */
+  #belt({ path, wheels, frame, carriage, radius, normal }, size, scene) {
+    const thin = this.isGhost ? GHOST : 1;
+    const up = new Vector3(...normal);
+    const raised = (point) => new Vector3(...point).addScaledVector(up, size * BELT.above);
+    for (const { line: [start, end], kind } of frame) {
+      const [a, b] = [new Vector3(...start), new Vector3(...end)];
+      this.#beam(a, b, thin * size * BEAM.height, thin * size * BEAM.width, kind);
+      if (kind === "base" && !this.isGhost && Math.abs(up.z) > 0.5) this.#legs([a, b], size, scene);
+    }
+    path.slice(1).forEach((end, i) => {
+      const [a, b] = [raised(path[i]), raised(end)];
+      if (a.distanceTo(b) > 0) this.#strand(a, b, up, thin * size);
+    });
+    for (const { at, joint } of wheels) {
+      const [top, low] = [1, -1].map((side) => raised(at).addScaledVector(up, 0.6 * side * size * BELT.width));
+      this.#along(ROUND, low, top, radius, "joint");
+      if (joint) this.#drive(new Vector3(...at).addScaledVector(up, 0.5 * size * BEAM.height), up.clone().negate(), size);
+    }
+    const block = this.#mesh(BLOCK, "joint");
+    block.position.set(...carriage);
+    block.quaternion.copy(levelAlong(new Vector3(...path[1]).sub(new Vector3(...path[0])).normalize()));
+    block.scale.set(...CARRIAGE.map((part) => thin * size * part));
+  }
+
+  /** A straight piece of a belt: its width stands along the normal. */
+  #strand(a, b, up, size) {
+    const way = b.clone().sub(a);
+    const strand = this.#mesh(BLOCK, "belt");
+    strand.position.copy(a).lerp(b, 0.5);
+    const along = way.clone().normalize();
+    strand.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(along.clone().cross(up), along, up));
+    strand.scale.set(size * BELT.thick, way.length() + size * BELT.thick, size * BELT.width);
+  }
+
+  #legs(tops, size, scene) {
+    const floor = groundOf(extentOf(scene));
+    for (const top of tops) this.#along(ROUND, new Vector3(top.x, top.y, floor), top, size * LEG, "base");
+  }
+
   /** A beam that is longer than the way of its carriage; the first of a machine stands on legs if it lies. */
   #rail(from, at, axis, thin, isFirst, scene) {
     const sense = Math.sign(at.clone().sub(from).dot(axis)) || 1;
     const [a, b] = [from.clone().addScaledVector(axis, -sense * BEAM.beyond * thin), at.clone().addScaledVector(axis, sense * BEAM.beyond * thin)];
     this.#beam(a, b, thin * BEAM.height, thin * BEAM.width, "base");
-    if (!isFirst || this.isGhost || Math.abs(axis.z) > 0.5) return;
-    const floor = groundOf(extentOf(scene));
-    for (const top of [a, b]) this.#along(ROUND, new Vector3(top.x, top.y, floor), top, thin * LEG, "base");
+    if (isFirst && !this.isGhost && Math.abs(axis.z) <= 0.5) this.#legs([a, b], thin, scene);
   }
 
   /** A rod that grows: the cylinder of its drive around its first half. */

@@ -1,11 +1,8 @@
 /** The search for all poses of a platform at its axes. */
 
+import { FEWEST_STARTS, MOST_STARTS, OFTEN, SAME_POSE } from "./machines/softkin/constants.js";
 import { rotationOf, rowsOf } from "./pose.js";
 
-/** A search ends when it has begun so often, and has come to every pose so often; or at the most. */
-const [LEAST, EACH, MOST] = [1000, 4, 20000];
-/** Poses that differ by less, of the machine's size and of a rotation's entries, are one. */
-const SAME = 1e-5;
 /** Irrational steps that fill a space of six dimensions evenly: powers of 1 / g, where g^7 = g + 1. */
 const STEPS = [1, 2, 3, 4, 5, 6].map((power) => 1.1127756842787055 ** -power);
 
@@ -19,7 +16,7 @@ export function* posesFrom(machine, axes, points, present) {
   const size = 2 * Math.max(...points.map((point) => Math.hypot(...point.map((value, k) => value - centre[k]))));
   const modes = [machine, machine.inOtherAssembly()];
   const poses = [{ frame: present, isOther: false, count: 0 }];
-  for (let starts = 1; starts <= MOST; starts += 1) {
+  for (let starts = 1; starts <= MOST_STARTS; starts += 1) {
     const start = startAt(starts, machine.description.task, present, centre, size);
     for (const [isOther, mode] of modes.entries()) {
       const { status, frame } = mode.forward(axes, start);
@@ -29,7 +26,7 @@ export function* posesFrom(machine, axes, points, present) {
       else poses.push({ frame, isOther: Boolean(isOther), count: 1 });
     }
     yield { starts, poses };
-    if (starts >= LEAST && poses.every(({ count }) => count >= EACH)) return;
+    if (starts >= FEWEST_STARTS && poses.every(({ count }) => count >= OFTEN)) return;
   }
 }
 
@@ -45,5 +42,5 @@ function startAt(number, { position: letters, turning }, present, centre, size) 
 
 export function isSame(one, other, size) {
   const isNear = (a, b, within) => a.every((value, i) => Math.abs(value - b[i]) < within);
-  return isNear(one.position, other.position, SAME * size) && isNear(one.rotation.flat(), other.rotation.flat(), SAME);
+  return isNear(one.position, other.position, SAME_POSE * size) && isNear(one.rotation.flat(), other.rotation.flat(), SAME_POSE);
 }

@@ -27,6 +27,32 @@ export function shapesOf({ bodies, joints }) {
   return { shapes, isTool, bed };
 }
 
+/**
+ * Where the motor of a turn stands: at one end of its axis, or beside it where bodies leave both ends.
+ *
+ * @returns {{axis: number[], isAside: boolean}} axis: the direction from the joint to the motor
+ */
+export function motorPlace({ bodies }, { at, axis, body }) {
+  const isTaken = (sense) => bodies.some(({ kind, lines }, i) => (kind === "base" && !lines.length && body === 1 && sense * axis[2] < -PARALLEL)
+    || (Math.abs(i - body) < 2 && lines.some((ends) => ends.some((end, k) => isAt(end, at) && along(end, ends[1 - k], axis) * sense > PARALLEL))));
+  const sense = [-1, 1].find((one) => !isTaken(one));
+  if (sense) return { axis: axis.map((value) => sense * value), isAside: false };
+  const least = axis.map(Math.abs).indexOf(Math.min(...axis.map(Math.abs)));
+  const across = axis.map((value, i) => (i === least ? 1 : 0) - axis[least] * value);
+  const length = Math.hypot(...across);
+  return { axis: across.map((value) => value / length), isAside: true };
+}
+
+function isAt(one, other) {
+  return one.every((value, i) => Math.abs(value - other[i]) < 1e-9 * (1 + Math.abs(value)));
+}
+
+/** The cosine between the way from one point to another and an axis. */
+function along(start, end, axis) {
+  const way = end.map((value, i) => value - start[i]);
+  return way.reduce((sum, value, i) => sum + value * axis[i], 0) / (Math.hypot(...way) || 1);
+}
+
 function cosine(one, other) {
   return Math.abs(one.axis.reduce((sum, value, i) => sum + value * other.axis[i], 0));
 }

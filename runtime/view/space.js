@@ -23,6 +23,7 @@ export function levelAlong(axis) {
 /** The points between which a scene is drawn. */
 export function pointsOf(scene) {
   const points = scene.bodies.flatMap((body) => [body.frame.position, ...body.lines.flat()]);
+  if (scene.belt) points.push(...scene.belt.path, ...scene.belt.frame.flatMap(({ line }) => line));
   const isGrown = (joint) => scene.bodies[joint.body].kind === "rod";
   for (const joint of scene.joints.filter((one) => !isGrown(one))) points.push(joint.at, joint.at.map((value, i) => value - joint.travel * joint.axis[i]));
   return points;

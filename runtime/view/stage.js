@@ -315,7 +315,10 @@ export class Stage {
     };
     const letters = lettersOf(BASE * this.size).map(({ text, at }) => ({ text, at: placed(at).map((value) => value - 7), isFixed: true }));
     const other = this.others.map(({ text, scene }) => ({ text, at: placed(scene.bodies.at(-1).frame.position) }));
-    const joints = this.shown.joints.map((joint) => ({ text: joint.joints.join(" "), at: placed(joint.at) }));
+    const { joints: moved, belt } = this.shown;
+    const named = moved.filter((joint) => !belt || joint.joints.length === 1).map(({ joints, at }) => ({ name: joints.join(" "), at }));
+    named.push(...(belt?.wheels ?? []).filter(({ joint }) => joint).map(({ joint, at }) => ({ name: joint, at })));
+    const joints = named.map(({ name, at }) => ({ text: name, at: placed(at) }));
     const seen = [...letters, ...joints, ...other].filter(({ at: [x, y] }) => x > 0 && x < width && y > -ABOVE && y < height);
     this.names.show(seen, placed(this.handle.position.toArray()));
   }

@@ -25,6 +25,18 @@ DRAWN = (
 """A mechanism of each kind that is drawn in a way of its own."""
 
 
+MOTORS = {
+    "Kin_ArticulatedRobot_6DOF": ["A1", "A2", "A3", "A4", "A5", "A6"],
+    "Kin_Delta_P3C_Type3": ["A1", "A2", "A3"],
+    "Softkin_TableTable_AC": ["A", "C"],
+    "Softkin_Excavator": ["A1"],
+    "Softkin_RodPalletizer": ["A1", "A4", "M3"],
+    "Kin_Gantry3": [],
+    "Kin_Hexapod": [],
+}
+"""The axes that a motor at their joint turns, or at the crank of their loop: no cylinder, and no slide."""
+
+
 def scenes(name: str, parameters: dict[str, Any], rows: list[list[float]]) -> list[Any]:
     """The scenes at axis values, each with the answer of forward kinematics."""
     calls = [[call, axes] for axes in rows for call in ("scene", "forward")]
@@ -54,6 +66,8 @@ def test_bodies_follow_the_machine(name: str) -> None:
         moved = {axis for joint in joints for axis in joint["joints"]}
         assert moved == {axis.name for axis in softkin.catalogue()[name].AXES}
         assert all(np.isclose(np.linalg.norm(joint["axis"]), 1.0) for joint in joints)
+        assert name not in MOTORS or sorted(" ".join(m["joints"]) for m in scene["motors"]) == MOTORS[name]
+        _check_motors(scene)
         quill = any(joint["kind"] == "slide" and joint["body"] == len(bodies) - 1 for joint in joints)
         changing = {"plate"} if quill else set()  # the quill shifts the tool against it
         own = [b for b in bodies[:-1] if b["kind"] not in changing and not (b["kind"] == "rod" and b["joints"])]
@@ -68,9 +82,48 @@ def test_bodies_follow_the_machine(name: str) -> None:
             assert np.allclose(one, other, atol=1e-6, rtol=1e-9)
 
 
+def _check_motors(scene: dict[str, Any]) -> None:
+    """Each is at its joint, along its axis; of a crank at the first pin of the crank."""
+    for motor in scene["motors"]:
+        same = [j for j in scene["joints"] if j["joints"] == motor["joints"] and j["kind"] == "turn"]
+        pins = [b["lines"][0][0] for b in scene["bodies"] if b["name"].startswith("crank")]
+        assert motor["at"] in [*(j["at"] for j in same), *pins]
+        assert np.linalg.norm(motor["axis"]) == pytest.approx(1.0)
+        assert motor["at"] in pins or abs(np.dot(same[0]["axis"], motor["axis"])) == pytest.approx(1.0)
+
+
 def _own_points(body: dict[str, Any]) -> list[float]:
     """The distances of the points of a body from the origin of its frame."""
     return [float(np.linalg.norm(np.subtract(p, body["frame"]["position"]))) for line in body["lines"] for p in line]
+
+
+@pytest.mark.parametrize("name", ["Kin_HGantry3", "Kin_TGantry2", "Kin_P2Y"])
+def test_a_belt_moves_with_the_carriage(name: str) -> None:
+    """It keeps its length in a plane and holds the carriage; a drive pulls it past its own motor alone."""
+    axes = np.array([50.0, 90.0, -80.0][: len(softkin.catalogue()[name].AXES)])
+    rows = [axes, axes + np.eye(len(axes))[0], axes + np.eye(len(axes))[1]]
+    found = [scene for scene, _ in scenes(name, {}, [row.tolist() for row in rows])]
+    belts, bodies = [scene["belt"] for scene in found], found[0]["bodies"]
+    paths = [np.array(belt["path"]) for belt in belts]
+    lengths = [np.linalg.norm(np.diff(path, axis=0), axis=1) for path in paths]
+    assert np.ptp([length.sum() for length in lengths]) < 1e-9
+    assert np.ptp((paths[0] - belts[0]["carriage"]) @ belts[0]["normal"]) < 1e-9
+    assert belts[0]["carriage"][:2] == pytest.approx(bodies[-1]["frame"]["position"][:2])
+    assert [wheel["joint"] for wheel in belts[0]["wheels"] if wheel["joint"]] == _motors_of(found, lengths)
+    assert found[0]["motors"] == [] and all(len(scene["belt"]["frame"]) >= 2 for scene in found)
+
+
+def _motors_of(found: list[Any], lengths: list[Array]) -> list[str]:
+    """For each wheel that a motor turns, the axis of which a unit changes the belt before it by one."""
+    motors = [np.array(wheel["at"]) for wheel in found[0]["belt"]["wheels"] if wheel["joint"]]
+    path, names = np.array(found[0]["belt"]["path"]), [j["joints"] for j in found[0]["joints"]][0]
+    turned = []
+    for at in motors:
+        near = int(np.abs(np.linalg.norm(path - at, axis=1) - found[0]["belt"]["radius"]).argmin())
+        pulled = [abs(length[:near].sum() - lengths[0][:near].sum()) for length in lengths[1:]]
+        assert sorted(pulled) == pytest.approx([0.0, 1.0], abs=1e-9)
+        turned.append(names[int(np.argmax(pulled))])
+    return turned
 
 
 @pytest.mark.broad

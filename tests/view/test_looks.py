@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import softkin
 
+from tests.catalogue.platform_poses import points_of
 from tests.mechanisms import catalogue, named
 from tests.view.pages import ARM, Seen, confirm, frame_of, robot_of
-from tests.view.test_poses import points_of
 
 pytestmark = pytest.mark.slow
 EACH = pytest.mark.parametrize("name", [mechanism.name for _, mechanism in catalogue()])
@@ -19,7 +19,7 @@ SCARA = "Kin_Scara3_Z"
 def test_all_poses_of_a_platform(seen: Seen) -> None:
     """Each leg has its length in every pose that is shown; how they were found is said; a click shows one alone."""
     found = seen["poses"]
-    base, platform = (points_of(found["parameters"], side, "xyz", 6) for side in ("base", "platform"))
+    base, platform = (points_of(found["parameters"], side, "xyz") for side in ("base", "platform"))
     frames = found["all"]["frames"]
     for frame in frames:
         ends = np.array(frame["position"]) + platform @ np.array(frame["rotation"]).T
@@ -113,7 +113,7 @@ def test_labels_do_not_pile_up(name: str, seen: Seen) -> None:
         apart = [abs(one[at] - other[at]) - min(one, other, key=lambda label: label[at])[size] for at, size in sides]
         assert max(apart) > -2 or one["kind"] == other["kind"] == "letter", (one, other)
     words = {word for label in found["labels"] if not label["kind"] for word in label["text"].split()}
-    assert {joint.name for joint in named(name).joints} <= words or named(name).drives or named(name).belt
+    assert {joint.name for joint in named(name).joints} <= words or named(name).drives
     assert [label["text"] for label in found["labels"] if label["kind"]] == ["X", "Y", "Z"]
     assert re.fullmatch(r"grid 10*u?(\.0*1)? u|grid 0\.0*1 u|grid 1e-?\d+ u", found["scale"])
     assert not found["isOutside"]

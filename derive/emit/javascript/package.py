@@ -19,7 +19,7 @@ from derive.emit.javascript.description import description, inputs
 from derive.emit.javascript.functions import functions, rotation_function
 from derive.emit.javascript.printer import PRINTER, RUNTIME, comment, function_name, laid_out, list_of, text
 from derive.emit.javascript.program import function_lines, refusals_of, setup_lines
-from derive.emit.language import CONSTANTS, GENERATED, STATUSES, Part, environment, head_of, runtime
+from derive.emit.language import CONSTANTS, GENERATED, OF_POSES, STATUSES, Part, environment, head_of, runtime
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.kinematics.search.loop.find import ONWARD
@@ -73,7 +73,7 @@ def _templates() -> Environment:
         "version": _VERSION,
         "statuses": STATUSES,
         "rotation": laid_out(function_lines(rotation_function(), refusals_of(reasons_of_rotation()))),
-        "constants": {name: _literal(value) for name, value in CONSTANTS.items()},
+        "constants": {name: _literal(value) for name, value in {**CONSTANTS, **OF_POSES}.items()},
     }
     return templates
 

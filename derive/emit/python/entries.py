@@ -232,10 +232,10 @@ _OF_INIT = frozenset({"self", "locals", "unrolled", "Constants", "limits"})
 """The names that the text of `__init__` reads."""
 OF_CLASS = frozenset(
     """
-    AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS
+    ASSEMBLY AXES BRANCHES CONFIGURATION DEFAULT_CONFIGURATION DISTANCE_AXES FREEDOM HELD JACOBIAN_ROWS KEY LIMIT_KEYS
     LINES MARGINS NAME PARAMETERS PERIOD_AXES READS_ROTATION ROLE SURPLUS axis_accelerations axis_accelerations_batch
     axis_velocities axis_velocities_batch branch branches calibrated changed checks_limits condition configuration
-    configuration_offset deviations diagnose forward forward_batch from_dict from_json image_on in_degrees
+    configuration_offset deviations diagnose forward forward_all forward_batch from_dict from_json image_on in_degrees
     in_radians inverse inverse_all inverse_all_batch inverse_batch inverse_offset is_compatible jacobian
     jacobian_batch largest_feed largest_feed_batch limits line manipulability misses move names nearest nearest_batch
     orientation orientation_image parameters path plot project singularity singularity_batch tilted_plane to_dict

@@ -11,7 +11,7 @@ from jinja2 import Environment
 
 from derive.description.dimensions import Role
 from derive.emit.interface import rotation_entry
-from derive.emit.language import CONSTANTS, GENERATED, STATUSES, environment
+from derive.emit.language import CONSTANTS, GENERATED, OF_POSES, STATUSES, environment
 from derive.emit.python import entries
 from derive.emit.python.arrays import CALLED, TYPES, array_body, named_in
 from derive.emit.python.layout import documented
@@ -53,7 +53,7 @@ def templates() -> Environment:
 def _constants() -> dict[str, str]:
     """The literals of the constants that modules of the runtime import, by their names."""
     texts = {"ABOVE": Why.ABOVE.value, "BELOW": Why.BELOW.value, "NO_MEANING": NO_MEANING, "OTHER_TURN": OTHER_TURN}
-    values = {**CONSTANTS, **texts, "SAME_ROTATION": float(SAME_ROTATION)}
+    values = {**CONSTANTS, **OF_POSES, **texts, "SAME_ROTATION": float(SAME_ROTATION)}
     return {name: _literal(values[name]) for name in sorted(values)}
 
 
@@ -61,7 +61,7 @@ def _literal(value: str | float | tuple[float, ...]) -> str:
     """The literal of a constant."""
     if isinstance(value, tuple):
         return f"({', '.join(map(literal, value))})"
-    return entries.literal(value) if isinstance(value, str) else literal(value)
+    return entries.literal(value) if isinstance(value, str | int) else literal(value)
 
 
 def _paragraph(text: str, indent: int = 0) -> str:

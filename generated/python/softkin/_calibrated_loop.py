@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from softkin._calibrated import Calibrated, bare_of, ends_of
 from softkin._chain import true_ends
-from softkin._core import Mechanism, Pose
+from softkin._core import EveryPose, Mechanism, Pose
 from softkin._frame import Frame
 from softkin._mounted import mounted
 from softkin._start import IterativeForward
@@ -43,6 +43,9 @@ class CalibratedLoop(Calibrated):
 
     def _forward(self, axes: Reals) -> Pose | Status:
         return self.part._forward(self._actual(axes))
+
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        return self.part._every_pose(self._actual(axes))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         return self.part._orientation(self._actual(axes))

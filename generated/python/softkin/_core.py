@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from softkin._array import Programs
+    from softkin._assembly import ForwardSolution
     from softkin._chain import Link
     from softkin._mounted import Mounted
     from softkin._names import NamedConfiguration
@@ -83,6 +84,8 @@ _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _STATUSES = tuple(Status)
 
 Pose: TypeAlias = tuple[Vector, Rotation, Reals]
+EveryPose: TypeAlias = tuple[tuple[Pose, bool], ...]
+"""All poses at axis values, the one of `forward` first, each with whether it is of the other assembly mode."""
 Image: TypeAlias = tuple[Rotation, Vector, Vector]
 _OneBranch: TypeAlias = Callable[[Signs], Reals | Diagnosis]
 """The axes by the signs of the branches."""
@@ -172,6 +175,8 @@ class Mechanism(Value, ABC):
     """The indices of the axes that the inverse leaves where the reference has them."""
     LINES: tuple[tuple[int, int, str], ...] = ()
     """What is drawn of a closed loop: lines by the numbers of two points of `_points`, -1 is the tool, and the axes."""
+    ASSEMBLY: str = ""
+    """The parameter that names the assembly mode of a closed loop which closes in two ways."""
     DISTANCE_AXES: tuple[int, ...]
     """The indices of the axes that decide an automatic choice."""
 
@@ -280,6 +285,26 @@ class Mechanism(Value, ABC):
             self._fail("forward", pose, axes=values)
         position, rows, margins = pose
         return Frame(position, rows), self._written(margins, values)
+
+    def forward_all(self, axes: Numbers) -> tuple[ForwardSolution, ...]:
+        """All poses at axis values, the one of `forward` first: frame, configuration, and whether it is of the other
+        assembly mode. Axis limits are not tested. Where there is no pose the result is empty.
+
+        A chain has one pose: a loop inside it closes on the side that its description states. A closed loop that closes
+        in two ways (`ASSEMBLY`) has up to two, both in closed form: these are all. A platform whose forward kinematics
+        iterates is searched in both modes: Newton's method from 1,000 starts, spread evenly over places and rotations,
+        and from a thousand more until it came to each pose four times, 20,000 at most. The same axes give the same
+        result; it is no proof that there are no more poses. Those that differ by less than 1e-5 of the size of the
+        machine, and of the entries of a rotation, are one.
+        axes: one value for each axis, in degrees or the user's length unit. Raises BAD_INPUT for values that are no
+        such numbers.
+        """
+        from softkin import _assembly
+
+        values = reals(axes, len(self.AXES), "axes")
+        if not reasonable(*values):
+            self._fail("forward_all", Status.BAD_INPUT, axes=values)
+        return _assembly.forward_all(self, values)
 
     def misses(self, axes: Numbers) -> dict[str, float]:
         """What each surplus rod is too short for the pose that the other axes give, by the name of its axis.
@@ -1101,6 +1126,14 @@ class Mechanism(Value, ABC):
             self._refuse(call, why, (unusable(inputs) if why.status is Status.BAD_INPUT else "") or why.in_words)
         detail = unusable(inputs) if why is Status.BAD_INPUT else ""
         raise KinematicsError(why, f"{self.NAME}.{call}: {why.meaning}" + (f": {detail}" if detail else ""))
+
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        """All poses at axis values: of a closed loop those of both assembly modes."""
+        modes = [(self, False)]
+        if self.ASSEMBLY:
+            modes.append((self.changed(**{self.ASSEMBLY: not self.parameters[self.ASSEMBLY]}), True))
+        poses = [(machine._forward(axes), is_other) for machine, is_other in modes]
+        return tuple((pose, is_other) for pose, is_other in poses if not isinstance(pose, Status))
 
     @abstractmethod
     def _forward(self, axes: Reals) -> Pose | Status: ...

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
 
 from softkin._configuration import Criterion
 from softkin._constants import TIE
-from softkin._core import SEVERAL_AXES, TURN, TWIST, Image, Mechanism, Pose
+from softkin._core import SEVERAL_AXES, TURN, TWIST, EveryPose, Image, Mechanism, Pose
 from softkin._ends import Ends
 from softkin._orientation import OrientationKinematics, turning_axis
 from softkin._twist import TwistChoice
@@ -205,8 +205,12 @@ class Coupled(Mechanism):
         own = self.orientation_part._forward(axes[self._count :])
         if isinstance(own, Status):
             return own
-        position, flange, margins = carrier
-        return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
+        return _on(carrier, own)
+
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        carriers = self.position_part._every_pose(axes[: self._count])
+        every = self.orientation_part._every_pose(axes[self._count :])
+        return tuple((_on(carrier, own), one or other) for carrier, one in carriers for own, other in every)
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         flange = self.position_part._orientation(axes[: self._count])
@@ -407,6 +411,12 @@ def _tool_of(orientation: OrientationKinematics) -> tuple[Vector, Rotation]:
 def _a(role: str) -> str:
     """A role with its article."""
     return f"{'an' if role[0] in 'aeiou' else 'a'} {role}"
+
+
+def _on(carrier: Pose, own: Pose) -> Pose:
+    """The pose at the flange of another one."""
+    position, flange, margins = carrier
+    return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
 
 
 def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:

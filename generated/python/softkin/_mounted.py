@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 from softkin._around import Around
 from softkin._configuration import AUTOMATIC, slots
 from softkin._constants import EXACT
-from softkin._core import PITCH, TURN, TWIST, Image, Mechanism, Pose
+from softkin._core import PITCH, TURN, TWIST, EveryPose, Image, Mechanism, Pose
 from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import reasonable
 from softkin._search import SearchedInverse
@@ -138,6 +138,10 @@ class Mounted(Around):
 
     def _forward(self, axes: Reals) -> Pose | Status:
         return self._of_flange(self.bare._forward(axes))
+
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        found = [(self._of_flange(pose), is_other) for pose, is_other in self.bare._every_pose(axes)]
+        return tuple((pose, is_other) for pose, is_other in found if not isinstance(pose, Status))
 
     def _of_flange(self, pose: Pose | Status) -> Pose | Status:
         """The pose of the tool, by that of the flange."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from softkin._around import Around
 from softkin._configuration import Criterion
-from softkin._core import Mechanism, Pose
+from softkin._core import EveryPose, Mechanism, Pose
 from softkin._input import reals
 from softkin._offset import OffsetKinematics
 from softkin._orientation import OrientationKinematics, TotalImage
@@ -155,6 +155,9 @@ class InRadians(Around):
 
     def _forward(self, axes: Reals) -> Pose | Status:
         return self.part._forward(self._deg(axes))
+
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        return self.part._every_pose(self._deg(axes))
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
         return self.part._orientation(self._deg(axes))

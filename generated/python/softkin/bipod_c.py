@@ -185,6 +185,7 @@ class BipodC(OffsetKinematics, TwistChoice):
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    ASSEMBLY = "tcp_above"
     LINES = ((4, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, "A3"), (3, -1, "A3"))
     DISTANCE_AXES = (0, 1, 2)
 

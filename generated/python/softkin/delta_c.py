@@ -216,6 +216,7 @@ class DeltaC(OffsetKinematics, TwistChoice):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2, 3)
     LIMIT_KEYS = ("a1", "a2", "a3", "a4")
+    ASSEMBLY = "tcp_above"
     LINES = (
         (6, 0, "A1"),
         (8, 2, "A2"),

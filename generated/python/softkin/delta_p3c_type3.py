@@ -354,6 +354,7 @@ class DeltaP3CType3(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    ASSEMBLY = "tcp_above"
     LINES = (
         (6, 0, "A1"),
         (8, 2, "A2"),

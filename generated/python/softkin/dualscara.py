@@ -224,6 +224,7 @@ class DualScara(OffsetKinematics, TwistChoice):
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 3)
     LIMIT_KEYS = ("a1", "a2", "a3", "a4")
+    ASSEMBLY = "tcp_back"
     LINES = ((3, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 1, ""), (1, -1, "A3 A4"))
     DISTANCE_AXES = (0, 1, 3)
 

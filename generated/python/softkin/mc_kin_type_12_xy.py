@@ -243,6 +243,7 @@ class KinType12XY(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     LIMIT_KEYS = ("a1", "a2")
+    ASSEMBLY = "e_right"
     LINES = ((4, 0, "A1"), (4, 0, "A1"), (4, 3, "A2"), (0, 1, ""), (0, 2, ""), (3, 2, ""), (1, -1, ""))
     DISTANCE_AXES = (0, 1)
 

@@ -157,6 +157,7 @@ class P2XType1(OffsetKinematics):
     BRANCHES = 2
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    ASSEMBLY = "tcp_above"
     LINES = ((5, 0, "A1"), (6, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 

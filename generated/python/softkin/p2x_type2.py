@@ -123,6 +123,7 @@ class P2XType2(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2")
+    ASSEMBLY = "tcp_above"
     LINES = ((5, 0, "A1"), (5, 2, "A2"), (0, 1, ""), (2, 3, ""), (1, -1, ""), (3, -1, ""))
     DISTANCE_AXES = (0, 1)
 

@@ -221,6 +221,7 @@ class ThreeCables(OffsetKinematics):
     BRANCHES = 0
     PERIOD_AXES = ()
     LIMIT_KEYS = ("l1", "l2", "l3")
+    ASSEMBLY = "point_above"
     LINES = ((0, 1, "L1"), (2, 1, "L2"), (3, 1, "L3"), (1, -1, ""))
     DISTANCE_AXES = (0, 1, 2)
 

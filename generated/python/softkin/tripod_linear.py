@@ -211,6 +211,7 @@ class TripodLinear(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    ASSEMBLY = "tcp_below"
     LINES = (
         (7, 0, "A1"),
         (9, 2, "A2"),

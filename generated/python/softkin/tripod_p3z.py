@@ -270,6 +270,7 @@ class TripodP3Z(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = ()
     LIMIT_KEYS = ("a1", "a2", "a3")
+    ASSEMBLY = "tcp_above"
     LINES = (
         (7, 0, "A1"),
         (8, 2, "A2"),

@@ -227,6 +227,7 @@ class TripodRotary(OffsetKinematics):
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     LIMIT_KEYS = ("a1", "a2", "a3")
+    ASSEMBLY = "tcp_above"
     LINES = (
         (12, 0, "A1"),
         (12, 2, "A1"),

@@ -8,7 +8,11 @@
  * @typedef {{joints: string[], kind: string, at: number[], axis: number[], body: number, travel: number}} Joint - kind:
  *   "turn" or "slide"; axis: of length one, a positive joint value turns counter-clockwise about it or moves along it;
  *   body: the number of the body that it moves; travel: of a slide, its way from `at - travel axis` to `at`
+ * @typedef {{joints: string[], at: number[], axis: number[], body: number}} Motor - beside an axis that turns, of which
+ *   it turns the body; none where a loop or a belt moves the joint, or several axes
  */
+
+import { beltOf } from "./belt.js";
 
 const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 /** Vectors closer to parallel than this cosine count as parallel. */
@@ -24,17 +28,19 @@ const HALF_WIDTH = 0.06;
  * @param {number[][]} values - what the program of the parts computes
  * @param {number[]} position - of the tool
  * @param {number[][]} rotation - of the tool, by rows
- * @returns {{bodies: Body[], joints: Joint[]}}
+ * @param {{name: string, lower: number | null, upper: number | null}[]} limits - of the machine
+ * @returns {{bodies: Body[], joints: Joint[], motors: Motor[], belt: object | null}} belt: as `beltOf` gives it
  */
-export function sceneOf(parts, values, position, rotation) {
+export function sceneOf(parts, values, position, rotation, limits) {
   const tool = { name: "tool", kind: "tool", joints: [], frame: { position, rotation }, lines: [] };
-  const found = parts.kind === "chain" ? chainOf(parts, values) : loopOf(parts, values, tool.frame);
-  return { bodies: [...found.bodies, tool], joints: found.joints };
+  const found = parts.kind === "chain" ? chainOf(parts, values, limits) : loopOf(parts, values, tool.frame);
+  return { ...found, bodies: [...found.bodies, tool] };
 }
 
 /** A chain, composed from its base: a body between every two joints. */
-function chainOf({ factors, loops = [] }, values) {
-  const joints = [];
+function chainOf({ factors, loops = [], belt }, values, limits) {
+  const [joints, motors] = [[], []];
+  const moved = new Set(loops.flatMap((loop) => loop.joints));
   let [at, rows] = [[0, 0, 0], IDENTITY];
   let body = { name: "base", kind: "base", joints: [], frame: { position: at, rotation: rows }, lines: [] };
   const bodies = [body];
@@ -67,6 +73,9 @@ function chainOf({ factors, loops = [] }, values) {
       bodies.push(body);
       joints.push({ joints: factor.joints, kind: isShift ? "slide" : "turn", at, body: bodies.length - 1,
         axis: times(sense, direction), travel: isShift ? sense * amount : 0 });
+      if (!isShift && factor.joints.length === 1 && !moved.has(factor.joints[0])) {
+        motors.push({ joints: factor.joints, at, axis: direction, body: bodies.length - 1 });
+      }
       [start, last] = [at, direction];
     } else if (isShift) {
       shifts.push(way);
@@ -90,9 +99,22 @@ function chainOf({ factors, loops = [] }, values) {
       if (!lines.length) continue;
       const own = { position: lines[0][0], rotation: frameAlong(unit(minus(lines[0][1], lines[0][0]))) };
       bodies.push({ name: `${word} beside the ${loop.name}`, kind: "link", joints: loop.joints, frame: own, lines });
+      if (word === "crank" && loop.isFirst && !loop.cylinder && factors[loop.at].motion !== "shift") {
+        motors.push({ joints: loop.joints, at: pins[0], axis: columnOf(axes, factors[loop.at].axis), body: bodies.length - 1 });
+      }
     }
   }
-  return { bodies, joints };
+  return { bodies, joints, motors, belt: belt ? beltAt(belt, factors, frames, values, limits) : null };
+}
+
+/** The belt on the frame that two shifts of the chain share. */
+function beltAt(belt, factors, frames, values, limits) {
+  const slides = belt.slides.map((k) => factors[k]);
+  const [at, rows] = frames[belt.slides[0]];
+  const ends = limits.filter(({ name }) => slides[0].joints.includes(name)).flatMap(({ lower, upper }) => [lower, upper]);
+  const most = ends.includes(null) ? Infinity : Math.max(...ends.map(Math.abs));
+  const place = slides.map(({ amount }) => values[amount][0]);
+  return beltOf(belt, at, slides.map(({ axis }) => columnOf(rows, axis)), place, most);
 }
 
 /** A loop: its base, cranks, carriages, rods and plate. */
@@ -100,12 +122,16 @@ function loopOf(parts, values, tool) {
   const at = (place) => values[place];
   const base = { name: "base", kind: "base", joints: [], frame: { position: [0, 0, 0], rotation: IDENTITY },
     lines: ringOf(parts.base.map(at)) };
-  const found = { bodies: [base], joints: [] };
+  const found = { bodies: [base], joints: [], motors: [], belt: null };
   const add = (body, joint) => {
     found.bodies.push(body);
     if (joint) found.joints.push({ ...joint, body: found.bodies.length - 1 });
   };
-  for (const crank of parts.cranks) add(...crankOf(crank, at));
+  for (const crank of parts.cranks) {
+    add(...crankOf(crank, at));
+    const { joints, at: centre, axis, body } = found.joints.at(-1);
+    if (crank.isHeld) found.motors.push({ joints, at: centre, axis, body });
+  }
   for (const rail of parts.rails) {
     const way = minus(at(rail.at), at(rail.origin));
     const axis = unit(at(rail.direction));

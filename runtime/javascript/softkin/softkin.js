@@ -226,7 +226,8 @@ export class Machine {
    * @param {number[]} axes
    * @param {Frame} [frame] - that of the tool at these axes where it is known, as after `inverse`; else `forward` finds
    *   it
-   * @returns {{status: number, bodies: object[], joints: object[]}} the base first, the tool last
+   * @returns {{status: number, bodies: object[], joints: object[], motors: object[], belt: object | null}} bodies: the
+   *   base first, the tool last
    */
   scene(axes, frame) {
     const values = this._axes(axes);
@@ -237,7 +238,7 @@ export class Machine {
     const [position, rotation] = known;
     if (!isReasonable(...values, ...position, ...rotation.flat())) return refuse(Status.BAD_INPUT).told();
     const found = this._programs.parts(this._k, values, position, rotation);
-    return { status: Status.OK, ...sceneOf(this.description.parts, found, position, rotation) };
+    return { status: Status.OK, ...sceneOf(this.description.parts, found, position, rotation, this.limits) };
   }
 
   _accelerations(axes, velocities, twistRate, start) {

@@ -6,7 +6,7 @@ from copy import copy
 from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 from softkin import _native
-from softkin._core import Mechanism
+from softkin._core import EveryPose, Mechanism
 from softkin._frame import Frame
 from softkin._input import position_of, rotation_of
 from softkin._scalar import reasonable
@@ -178,13 +178,28 @@ class IterativeForward(Mechanism):
             self._fail(call, Status.BAD_INPUT, start=position)
         return self._started(position, rotation)
 
+    def _every_pose(self, axes: Reals) -> EveryPose:
+        from softkin import _assembly
+
+        return _assembly.searched(self, axes)
+
     def _started(self, position: Vector, rotation: Rotation) -> Self:
+        return self._with(with_start(self._constants, position, rotation))
+
+    def _in_other_assembly(self) -> Self:
+        """This machine in the other assembly mode. Its home pose is not one of that mode: it needs a start."""
+        constants = copy(self._constants)
+        constants.assembly_sign = -constants.assembly_sign
+        return self._with(constants)
+
+    def _with(self, constants: Any) -> Self:
+        """This machine with other constants."""
         found = object.__new__(type(self))
         names = {name for cls in type(self).__mro__ for name in getattr(cls, "__slots__", ()) if hasattr(self, name)}
         known = {name: getattr(self, name) for name in names - {"__dict__", "__weakref__"}} | getattr(
             self, "__dict__", {}
         )
-        known |= {"_constants": with_start(known["_constants"], position, rotation)}
+        known |= {"_constants": constants}
         known |= {"_machine": _native.machine_of(self, is_changed=True)} if self._is_native else {}
         for name, value in known.items():
             object.__setattr__(found, name, value)
@@ -196,6 +211,8 @@ class IterativeForward(Mechanism):
 
         programs = self._array_programs()
         return programs if start is None else _batch.started(self, programs, axes, start)
+
+    _constants: Any
 
     if TYPE_CHECKING:
 
