@@ -121,7 +121,7 @@ def files_in(folder: Path) -> Iterator[Path]:
 _NUMBERS = {
     **{name: float(vars(constants)[name]) for name in (
         *("COINCIDENT", "EDGE", "GEARED_TURN", "HELD", "LARGEST", "LEAST", "LIMIT"),
-        *("ONE_TURN", "PIVOT", "SINGULAR", "SOLVABLE", "TIE", "UNLIMITED"),
+        *("ONE_TURN", "PIVOT", "SINGULAR", "SOLVABLE", "TIE"),
     )},
     "EXACT": float(constants.EXACT_ROTATION),
     "LARGEST_ERROR": float(constants.ROTATION),

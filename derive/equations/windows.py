@@ -11,7 +11,7 @@ from functools import cached_property
 import sympy as sp
 
 from derive.description.mechanism import Joint, Mechanism, rotary
-from derive.ir.constants import GEARED_TURN, LARGEST, LIMIT, ONE_TURN, UNLIMITED
+from derive.ir.constants import GEARED_TURN, LARGEST, LIMIT, ONE_TURN
 from derive.ir.passes import plain, renamed
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Output, Program, Require, Statement, Status, rewritten
@@ -88,15 +88,15 @@ class Window:
         tolerance = real(f"tolerance_{self.key}")
         widened = (
             Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
-            Let(real(f"lowest_{self.key}"), Select(unlimited, -UNLIMITED, low - tolerance)),
-            Let(real(f"highest_{self.key}"), Select(unlimited, UNLIMITED, high + tolerance)),
+            Let(real(f"lowest_{self.key}"), Select(unlimited, -LARGEST, low - tolerance)),
+            Let(real(f"highest_{self.key}"), Select(unlimited, LARGEST, high + tolerance)),
         )
         if not self.has_turns:
             return widened
         one_turn = sp.And(sp.Not(unlimited), compared(sp.Le, high - low, ONE_TURN + tolerance))
         if self.turns != 1:
             lowest, highest = (real(f"{word}_{self.key}") for word in ("lowest", "highest"))
-            one_turn = sp.And(sp.Lt(highest, UNLIMITED / 2), sp.Le((highest - lowest) * self.turns, GEARED_TURN))
+            one_turn = sp.And(sp.Lt(highest, LARGEST / 2), sp.Le((highest - lowest) * self.turns, GEARED_TURN))
         return (
             *widened,
             Let(flag(f"single_{self.key}"), one_turn, "at most one turn is inside the limits"),

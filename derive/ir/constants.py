@@ -25,7 +25,7 @@ SQUARES = sp.Float("1e-15")
 LARGEST_MISS = sp.Float("1e-3")
 """A surplus rod fits a pose where it misses by at most this share of its length, unless a length is given."""
 LARGEST = sp.Integer(10) ** 9
-"""Inputs larger in size than this are refused."""
+"""Inputs larger in size than this are refused, and so are answers: an axis without limits ends here."""
 ROTATION = sp.Float("1e-4")
 """How far the product of a rotation with its transpose may be from the identity: some frames come from single
 precision."""
@@ -85,6 +85,10 @@ LATTICE = 17
 """The angle of joint k, counted from 0, is turned this to the power of k times as far, modulo `SCANNED`: the values of
 several free angles are a lattice. It is prime to `SCANNED`.
 """
+STARTS = 13
+"""At last steps are taken from so many values of free angles: one step alone does not tell how near a start is where a
+later angle is free next to one value alone.
+"""
 PASSES = 64
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
 STALLED = sp.Float("0.999")
@@ -108,5 +112,3 @@ GEARED_TURN = sp.Float("350.001")
 """`ONE_TURN` for a joint with a gear: in degrees of the joint, between limits that tolerances have widened."""
 EDGE = sp.Float("1e-9")
 """How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
-UNLIMITED = sp.Integer(10) ** 12
-"""Stands for "no limit": beyond anything an input can be."""

@@ -157,16 +157,16 @@ softkin_status softkin_window_of(const softkin_limit *limit, double lower, doubl
   const bool is_wide = !(has_limits && is_tested);
   *ends = (softkin_ends){has_limits ? low : -INFINITY, has_limits ? high : INFINITY};
   if (is_open) {
-    window->lowest = is_tested && isfinite(low) ? low - tolerance : -SOFTKIN_UNLIMITED;
-    window->highest = is_tested && isfinite(high) ? high + tolerance : SOFTKIN_UNLIMITED;
+    window->lowest = is_tested && isfinite(low) ? low - tolerance : -SOFTKIN_LARGEST;
+    window->highest = is_tested && isfinite(high) ? high + tolerance : SOFTKIN_LARGEST;
     window->single = false;
     window->middle = 0.0;
     return SOFTKIN_OK;
   }
   const bool is_single = turns == 0.0 ? high - low <= SOFTKIN_ONE_TURN + tolerance
                                       : (high - low + 2.0*tolerance)*turns <= SOFTKIN_GEARED_TURN;
-  window->lowest = is_wide ? -SOFTKIN_UNLIMITED : low - tolerance;
-  window->highest = is_wide ? SOFTKIN_UNLIMITED : high + tolerance;
+  window->lowest = is_wide ? -SOFTKIN_LARGEST : low - tolerance;
+  window->highest = is_wide ? SOFTKIN_LARGEST : high + tolerance;
   window->single = has_limits && is_single;
   window->middle = 0.5*low + 0.5*high;
   return SOFTKIN_OK;

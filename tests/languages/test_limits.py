@@ -8,7 +8,7 @@ import pytest
 import softkin
 
 from tests.corpus.dimensions import DIMENSIONS
-from tests.languages.language import JAVASCRIPT, Answer, C
+from tests.languages.language import JAVASCRIPT, LANGUAGES, Answer, C, Language
 
 NAME = "Kin_Scara4_ZCcoupled_Type1"
 LIMITS: list[dict[str, Any]] = [
@@ -103,3 +103,15 @@ def test_the_test_of_limits() -> None:
     assert [found["status"] for found in answer["found"]] == [0, 0, 3, 3]
     assert answer["found"][2]["reason"] == "A1: above its upper limit" and answer["found"][2]["unit"] == "deg"
     assert answer["found"][3]["turn"] == 1  # -400 is -40 on the first turn
+
+
+@pytest.mark.parametrize("language", LANGUAGES, ids=str)
+def test_no_answer_is_larger_than_an_input(language: Language) -> None:
+    """Without limits an axis ends where forward kinematics would refuse its value."""
+    given = {"offset_x": 9e8}
+    robot = softkin.catalogue()["Kin_Gantry2"](**given)
+    frames = [softkin.Frame((x, 0.0, 0.0)) for x in (1e8, 1.001e8)]
+    calls = [["inverse", {"position": f.position, "rotation": f.rotation}, [], [0.0, 0.0]] for f in frames]
+    (answer,) = language.ask(language.of_catalogue("Kin_Gantry2"), [{"parameters": given, "calls": calls}])
+    expected = [int(robot.diagnose(frame, (), (0.0, 0.0)).status) for frame in frames]
+    assert [found["status"] for found in answer["found"]] == expected == [0, int(softkin.Status.UNREACHABLE)]

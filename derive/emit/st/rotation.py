@@ -14,7 +14,7 @@ from derive.emit.st.program import Printed, printed
 from derive.emit.st.refusal import MISSING, REASON, Explained, Refusal
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.equations.windows import limits_of_axis
-from derive.ir.constants import GEARED_TURN, UNLIMITED
+from derive.ir.constants import GEARED_TURN, LARGEST
 from derive.ir.passes import normalise, with_inputs
 from derive.ir.program import Let, Output, Program
 from derive.ir.symbols import ROTATION_ENTRIES
@@ -99,7 +99,7 @@ class LimitsFunction:
     """The variables of the function, with their types."""
     one_turn: str = literal(float(GEARED_TURN))
     """The widest range, in degrees of the joint, that holds one value for every direction."""
-    unlimited: str = literal(float(UNLIMITED / 2))
+    unlimited: str = literal(float(LARGEST / 2))
     """More than any limit."""
 
 

@@ -14,9 +14,10 @@ and one of them is free (degenerate case):
 the values nearest to the reference that satisfy the equations, v = r + M' (e - M r) / |M|^2, where the equations agree.
 The determinant is the conditioning. Taken only where nothing else is left.
 
-Along a direction that can vanish:  the same as along a direction, with k₁² + k₂² that may be zero. There v is free, and
-keeps its reference (degenerate case). The length of the direction is the conditioning. The steps before may have come
-from a difference of the equations that says nothing there: all of them are tested with the value.
+Along a direction that can vanish:  the same as along a direction, with k₁² + k₂² that may be zero. There, and where v
+would be larger than an input may be, v is free, and keeps its reference (degenerate case). The length of the direction
+is the conditioning. The steps before may have come from a difference of the equations that says nothing there: all of
+them are tested with the value.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Conditioning, Equation, Problem
-from derive.ir.constants import FREE_ANGLE, MET
+from derive.ir.constants import FREE_ANGLE, LARGEST, MET
 from derive.ir.primitives import Select
 from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.reason import Why, about_joint
@@ -111,14 +112,14 @@ def affine_along_or_free(problem: Problem, equations: tuple[Equation, ...]) -> I
         along = [naming.named(row[0][0], f"{e.label}_along_{unknown.name}") for e, row in some]
         right = [naming.named(-row[1], f"{e.label}_of_{unknown.name}") for e, row in some]
         size = naming.length(f"direction_of_{unknown.name}", *along)
-        points, divisor = sp.Gt(size, FREE_ANGLE), real(f"divisor_{unknown.name}")
-        value = sum(k * e for k, e in zip(along, right, strict=True)) / divisor**2
+        total, divisor = sp.Add(*(k * e for k, e in zip(along, right, strict=True))), real(f"divisor_{unknown.name}")
+        points = sp.And(sp.Gt(size, FREE_ANGLE), sp.Le(sp.Abs(total), LARGEST * size**2))
         agree = (sp.Abs(k * unknown - e) <= MET * problem.scale for k, e in zip(along, right, strict=True))
         note = f"{unknown.name} from the {_listed([e.label for e in alone])} equations, along its direction"
         statements: tuple[Statement, ...] = (
             *naming.lets,
             Let(divisor, Select(points, size, sp.Integer(1))),
-            Let(unknown, Select(points, value, problem.references[unknown]), note),
+            Let(unknown, Select(points, total / divisor**2, problem.references[unknown]), note),
             Require(sp.And(*agree), Status.UNREACHABLE, reason=about_joint(unknown, Why.SLIDE_ACROSS)),
         )
         conditioning = Conditioning(unknown, size, sp.Integer(1))
@@ -147,12 +148,13 @@ def _or_free(
     lets = [Let(u, Select(points, s, n)) for u, s, n in zip(unknowns, solved, nearest, strict=True)]
     left = matrix * sp.Matrix(unknowns) - sp.Matrix(right)
     agree = sp.And(*(sp.Le(sp.Abs(value), FREE_ANGLE * problem.scale) for value in left))
+    sizes = (sp.Le(sp.Abs(u), LARGEST) for u in unknowns)
     return (
         *naming.lets,
         Let(across, problem.tidy(matrix.det(method="berkowitz")), f"{note}: how far from across"),
         Let(divisor, Select(points, across, sp.Integer(1))),
         *lets,
-        Require(sp.Or(points, agree), Status.UNREACHABLE, reason=about_joint(last, Why.SLIDE_ACROSS)),
+        Require(sp.And(sp.Or(points, agree), *sizes), Status.UNREACHABLE, reason=about_joint(last, Why.SLIDE_ACROSS)),
     )
 
 

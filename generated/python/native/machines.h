@@ -11,7 +11,7 @@
 #define SOFTKIN_MODULE "_softkin_native"
 #define SOFTKIN_START PyInit__softkin_native
 /** The digest of what all machines share: the package compares it. */
-#define SOFTKIN_SOURCES "7ad2327c88b8d051"
+#define SOFTKIN_SOURCES "a0337a986d5acf75"
 #define SOFTKIN_MACHINES 72
 
 /** A machine, with the key that its class has, too: the module, and a digest of the C. */

@@ -31,7 +31,6 @@
 #define SOFTKIN_SINGULAR 0.001
 #define SOFTKIN_SOLVABLE 1e30
 #define SOFTKIN_TIE 1e-6
-#define SOFTKIN_UNLIMITED 1e12
 
 /** The outcome of a call; numbers and names are those of the Python package. */
 typedef enum {

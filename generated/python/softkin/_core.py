@@ -23,7 +23,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
-from softkin._constants import GEARED_TURN, LIMIT, NO_MEANING, ONE_TURN, SINGULAR, TIE, UNLIMITED
+from softkin._constants import GEARED_TURN, LARGEST, LIMIT, NO_MEANING, ONE_TURN, SINGULAR, TIE
 from softkin._ends import given_ends, limit_names
 from softkin._frame import Frame
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
@@ -246,7 +246,7 @@ class Mechanism(Value, ABC):
         if turns is not None:
             single = has_limits and (high - low + 2.0 * tolerance) * turns <= GEARED_TURN
         if not (has_limits and self.checks_limits):
-            return Window(-UNLIMITED, UNLIMITED, single, middle)
+            return Window(-LARGEST, LARGEST, single, middle)
         return Window(low - tolerance, high + tolerance, single, middle)
 
     def _one_sided_window(self, key: str, low: float, high: float, otherwise: tuple[float, float] | None) -> Window:
@@ -258,8 +258,8 @@ class Mechanism(Value, ABC):
                 raise self._refusal(f"lower_{key} below upper_{key}", f"lower_{key}", f"upper_{key}")
         if not self.checks_limits:
             low, high = -inf, inf
-        lowest = low - tolerance if isfinite(low) else -UNLIMITED
-        return Window(lowest, high + tolerance if isfinite(high) else UNLIMITED, False, 0.0)
+        lowest = low - tolerance if isfinite(low) else -LARGEST
+        return Window(lowest, high + tolerance if isfinite(high) else LARGEST, False, 0.0)
 
     def _refusal(self, condition: str, *names: str) -> KinematicsError:
         """The error for the named parameters, which violate a condition; the condition on a single one is its range."""

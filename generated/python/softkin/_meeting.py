@@ -52,6 +52,12 @@ ANOTHER_TURN = 90.0
 """Axis values that differ by more than this are on different turns."""
 FOLLOWED = ("pitch", "roll")
 """The rows of a Jacobian about the last axes of a chain."""
+STARTS, LATTICE, TURN = 113, 3, 360.0
+"""The starts all around: each turns the k-th axis by `LATTICE` to the power of k parts of `STARTS` more."""
+ENOUGH = 16
+"""After so many starts of which none leads near the frame, it is out of reach."""
+PULLS, DAMPED = 30, 0.01
+"""The most steps from such a start, and their damping, as a share of what is missed."""
 BEYOND_ALL = 2.0
 """What is missed by more than the deviations times this is out of reach."""
 BEYOND = "the machine as measured does not reach it [u]"
@@ -138,18 +144,43 @@ class Meeting:
         return max((abs(a - b) for a, b in zip(axes, others, strict=True)), default=0.0) > ANOTHER_TURN
 
     def _met(self, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At | Diagnosis:
-        """The true machine where it meets the frame on the branch: at last from all solutions of the nominal machine.
-        Of a searched machine a branch may have several; and next to where branches meet one may be on the other branch.
+        """The true machine where it meets the frame on the branch: at last from anywhere. Of a searched machine a
+        branch may have several solutions; and next to where branches meet one may be on the other branch.
         """
         found = self._met_on_branch(target, signs, turns, reference)
         if not isinstance(found, Diagnosis) or found.status is not Status.UNREACHABLE:
             return found
+        least = BEYOND_ALL
+        for number, axes in enumerate(self._anywhere(target, reference)):
+            pulled = self._pulled(self._at(axes, target), target)
+            at = self._across(self._stepped(pulled, target), target, signs, turns, reference)
+            if self._is_met(at, signs):
+                return at
+            least = min(least, at.size)
+            if number >= ENOUGH and least > NEAR:
+                break
+        return found
+
+    def _anywhere(self, target: Placed, reference: Reals) -> Iterator[Reals]:
+        """The axes of all solutions of the nominal machine; if it is searched, then axes all around."""
         for _, axes in self.machine.nominal._every_solution(*target, self.machine._actual(reference)):
             if not isinstance(axes, Diagnosis):
-                at = self._stepped(self._at(self.machine._commanded(axes), target), target)
-                if self._is_met(at, signs):
-                    return at
-        return found
+                yield self.machine._commanded(axes)
+        if self.machine.nominal._has_one_solution_a_branch() or not reasonable(*reference, *target[0]):
+            return
+        angles = [i for i in self.free if i not in self.sliding]
+        for number in range(STARTS):
+            turned = {i: TURN * (number * LATTICE**k % STARTS) / STARTS for k, i in enumerate(angles)}
+            yield tuple([value + turned.get(i, 0.0) for i, value in enumerate(reference)])
+
+    def _pulled(self, at: At, target: Placed) -> At:
+        """Where damped steps lead, however far that is; each is taken, whatever it leaves."""
+        for _ in range(PULLS):
+            step = None if at.size < NEAR else self._step(at, target, DAMPED * at.size)
+            if step is None:
+                break
+            at = self._at(step, target)
+        return at
 
     def _met_on_branch(self, target: Placed, signs: Signs, turns: Turns, reference: Reals) -> At | Diagnosis:
         """The true machine where it meets the frame on the branch: from the reference, if that is near; so a path goes

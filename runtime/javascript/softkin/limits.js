@@ -1,6 +1,6 @@
 /** The limits of axes and of other quantities, which are constants of a machine. */
 
-import { GEARED_TURN, LIMIT, ONE_TURN, UNLIMITED } from "./constants.js";
+import { GEARED_TURN, LARGEST, LIMIT, ONE_TURN } from "./constants.js";
 import { refuseParameters } from "./input.js";
 import { Refusal } from "./refusal.js";
 
@@ -35,8 +35,8 @@ function windowOf(limit, parameters, isTested, otherwise, turns) {
     if (otherwise !== null) [low, high] = [Math.max(low, otherwise[0]), Math.min(high, otherwise[1])];
     if (!(low < high)) return refused();
     const tolerance = LIMIT + finite.reduce((sum, end) => sum + LIMIT * Math.abs(end), 0);
-    const lowest = isTested && Number.isFinite(low) ? low - tolerance : -UNLIMITED;
-    const highest = isTested && Number.isFinite(high) ? high + tolerance : UNLIMITED;
+    const lowest = isTested && Number.isFinite(low) ? low - tolerance : -LARGEST;
+    const highest = isTested && Number.isFinite(high) ? high + tolerance : LARGEST;
     const [first, last] = [low, high].map((end) => (Number.isFinite(end) ? end : null));
     return { values: [lowest, highest, false, 0], ends: { lower: first, upper: last } };
   }
@@ -47,7 +47,7 @@ function windowOf(limit, parameters, isTested, otherwise, turns) {
     : (high - low + 2 * tolerance) * turns <= GEARED_TURN;
   const isWide = !(hasLimits && isTested);
   const values = [
-    isWide ? -UNLIMITED : low - tolerance, isWide ? UNLIMITED : high + tolerance,
+    isWide ? -LARGEST : low - tolerance, isWide ? LARGEST : high + tolerance,
     hasLimits && isSingle, 0.5 * low + 0.5 * high,
   ];
   return { values, ends: { lower: hasLimits ? low : null, upper: hasLimits ? high : null } };

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import ceil, floor, sqrt
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
 
-from softkin._constants import EDGE, LARGEST, UNLIMITED
+from softkin._constants import EDGE, LARGEST
 from softkin._input import reals
 from softkin._scalar import reasonable
 from softkin._types import Diagnosis, KinematicsError, Numbers, Reals, Rotation, Status, Vector
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_TURNS = 254
 """The turns that are tried in each sense from the reference: as many as a period byte can name."""
-_UNLIMITED = UNLIMITED / 2
+_UNLIMITED = LARGEST / 2
 _SAME = 1e-12
 """The share of an axis value that is rounding."""
 Measure: TypeAlias = Literal["squares", "largest"]
