@@ -227,7 +227,7 @@ def _checked(mechanism: Mechanism) -> Mechanism:
     turns = () if mechanism.chain is None else _arguments(mechanism)
     turned = {s for turn in turns for s in turn.free_symbols}
     for joint in mechanism.joints:
-        if joint.kind is Kind.LINEAR and joint.symbol in turned:
+        if joint.kind is Kind.LINEAR and not joint.loops and joint.symbol in turned:
             raise DescriptionError(
                 f"the chain turns by {joint.name!r}, which is a length: declare it rotary, and let it move lengths, too"
             )

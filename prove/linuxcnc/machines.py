@@ -179,6 +179,28 @@ TRUNNION = Machine(
     ),
     unreachable={"A": -130.0},
 )
+TRUNNION_B = Machine(
+    says="trunnion with B and C",
+    mechanism="Softkin_TableTable_BC",
+    sizes={"pivot_x": 35.0, "pivot_z": -55.0, "tool_length": 110.0},
+    letters="XYZBC",
+    linear=(0, 1, 2),
+    limits={"B": (-100.0, 100.0)},
+    turns=(("C", -1.0), ("B", -1.0)),
+    first=Stand(
+        (0.0, 0.0, 80.0, 30.0, 40.0),
+        (
+            g0(x=20, y=10, z=20, b=20, c=10),
+            g1(x=-30, y=25, z=5, b=60, c=80),
+            g2(30, -25, x=30, y=25, z=15, b=45, c=150),
+        ),
+    ),
+    second=Stand(
+        (10.0, 20.0, 90.0, -40.0, 60.0),
+        (g1(x=15, y=-10, z=10, b=-20, c=90), g2(-15, 10, x=-15, y=10, b=-50), g0(x=0, y=5, z=30, b=-70, c=-20)),
+    ),
+    unreachable={"B": -130.0},
+)
 NUTATING = Machine(
     says="nutating head, five axes",
     mechanism="Softkin_NutatingHead_CB",
@@ -240,4 +262,4 @@ HEXAPOD = Machine(
     ),
     unreachable={"Z": 1000.0},
 )
-MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION, NUTATING, HEXAPOD)
+MACHINES = (SCARA, DELTA, FIVE_BAR, SIX_AXES, TRUNNION, TRUNNION_B, NUTATING, HEXAPOD)
