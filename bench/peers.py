@@ -123,7 +123,7 @@ def _ikpy(file: Path) -> Solver:
 def measured(table: Table, solve: Solver, poses: Array) -> tuple[float, int, float, float]:
     """The median time of a call, how many poses have a right answer, right answers a pose, the worst of these.
 
-    The time is that of the processor: other work on the machine interrupts a long call often, and a short one hardly ever.
+    The time is that of the processor: other work on the machine interrupts a long call often, a short one hardly ever.
     """
     times, solved, answers, worst = [], 0, 0, 0.0
     solve(poses[0])
