@@ -88,10 +88,11 @@ bench: $(READY) $(BENCH)/ready
 costs: $(READY)
 	$(RUN) -m bench.costs
 
-# The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md.
+# The same arms in other packages, which stand in an environment of their own: the table of docs/COMPARE.md. One thread: matrices of
+# 6 × 6 do not become faster by several, and its processor time is measured.
 peers: $(READY) $(BENCH)/peers
 	$(RUN) -m tests.native.build
-	PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.peers
+	OPENBLAS_NUM_THREADS=1 PYTHONPATH=generated/python:build/native $(BENCH)/bin/python -m bench.peers
 
 # Two wheels into dist/, with the page of the viewer: one with the native core, for every CPython from 3.11 on with an old
 # enough C library, as auditwheel finds it; one without, for all other Pythons, free-threaded ones among them.

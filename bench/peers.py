@@ -121,15 +121,18 @@ def _ikpy(file: Path) -> Solver:
 
 
 def measured(table: Table, solve: Solver, poses: Array) -> tuple[float, int, float, float]:
-    """The median time of a call, how many poses have a right answer, right answers a pose, the worst of these."""
+    """The median time of a call, how many poses have a right answer, right answers a pose, the worst of these.
+
+    The time is that of the processor: other work on the machine interrupts a long call often, a short one hardly ever.
+    """
     times, solved, answers, worst = [], 0, 0, 0.0
     solve(poses[0])
     for pose in poses:
-        start = time.perf_counter()
+        start = time.thread_time()
         found: Any = []
         with suppress(ArithmeticError, ValueError, np.linalg.LinAlgError):
             found = solve(pose)
-        times.append(time.perf_counter() - start)
+        times.append(time.thread_time() - start)
         rows = np.degrees(np.array([np.asarray(row, float) for row in found]).reshape(-1, 6))
         missed = errors(table, rows, np.broadcast_to(pose, (len(rows), 4, 4)))
         right = missed[missed < RIGHT]
