@@ -44,8 +44,8 @@ def declared(text: str) -> str:
 
 _BLOCK = f"FUNCTION_BLOCK {MECHANISM.block_name}"
 _INITIALIZE, _FORWARD = "METHOD PROTECTED ReadInputs", "METHOD PROTECTED FindPose"
-_INVERSE, _BRANCH, _LIMITS = ("METHOD PRIVATE FindAxes", "METHOD PROTECTED SolveBranch", "METHOD PROTECTED TestLimits")
-_NEAREST = "METHOD PRIVATE FindNearest"
+_INVERSE, _BRANCH = "METHOD PROTECTED FindAxes", "METHOD PROTECTED SolveBranch"
+_NEAREST = "METHOD PROTECTED FindNearest"
 _WRITTEN, _BYTES = "METHOD PUBLIC AxesToCartesian", "METHOD PRIVATE Configure"
 _SINGULAR, _JACOBIAN = "METHOD PUBLIC IsSingularity", "METHOD PROTECTED FindJacobian"
 _DESCRIBE, _MARGINS = "METHOD PROTECTED Describe", "METHOD PROTECTED FindMargins"
@@ -138,14 +138,14 @@ WRONG = {
         "iReason := 2;\n    SolveBranch := Softkin_Names.Unreachable",
         "iReason := 2;\n    SolveBranch := Softkin_Names.InvalidCoupling",
     ),
-    "CartesianToAxes: a limit": Break(_LIMITS, "(values[index] <= axes", "(values[index] <= 2.0*axes"),
+    "CartesianToAxes: a limit": Break(_INVERSE, "IF NOT areInside THEN", "IF areInside THEN"),
     "CartesianToAxes: an output before a refusal": Break(
         _INVERSE,
         "IF status = Softkin_Names.NoError THEN\n  a := solution;",
         "IF status <> Softkin_Names.NotInitialized THEN\n  a := solution;",
     ),
-    "CartesianToAxes: a turn": Break(_INVERSE, "number, number - 1)", "number, number)"),
-    "CartesianToAxes: byte 3": Break(_INVERSE, "(number = 3)", "(number = 7)"),
+    "CartesianToAxes: a turn": Break("FUNCTION Softkin_NearOf", "number, number - 1)", "number, number)"),
+    "CartesianToAxes: byte 3": Break(_INVERSE, "ABS(choice.aSigns[0]) > 1", "choice.aSigns[0] > 1"),
     "Jacobian: a column": Break(_JACOBIAN, "J[3, 3] := 1.0;", "J[3, 3] := 0.0;"),
     "Jacobian: an element outside": Break("METHOD PUBLIC Jacobian", "J := found;", "J := found;\n  J[5, 5] := 1.0;"),
     "AxesToOrientation: an element": Break(

@@ -146,6 +146,11 @@ class Block:
         return [(field, program.outputs[output]) for field, output in self.computed]
 
     @property
+    def solves_offsets(self) -> bool:
+        """Whether it has a solution of its own for the point of a tool: SolveOffsetBranch."""
+        return not self.keeps_orientation and any("_Offset" in name for name in self.interfaces)
+
+    @property
     def slots(self) -> int:
         """The number of solutions that the branches distinguish."""
         return int(2 ** len(self.branches))

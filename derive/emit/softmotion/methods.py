@@ -33,6 +33,7 @@ _FIRST = (
     "Describe",
     "ReadInputs",
     "FindPose",
+    "FindAxes",
     "SolveBranch",
     "TestLimits",
     "ReasonOf",
@@ -85,8 +86,8 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
             f"baseAxis.d{axis.upper()}",
         )
     spelled |= {branch_sign(b.name).name: f"choice.aSigns[{k}]" for k, b in enumerate(kinematics.branches)}
-    for number, joint in enumerate(kinematics.period_joints):
-        spelled[joint.turn.name] = f"choice.aTurns[{number}]"
+    for byte, joint in enumerate(kinematics.period_joints, start=len(kinematics.branches)):
+        spelled[joint.turn.name] = f"Softkin_PeriodOfByte(cd.abyData[{byte}])"
         index = kinematics.mechanism.joints.index(joint)
         spelled[commanded(joint.key).name] = f"choice.aNear[{index}]"
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
