@@ -69,10 +69,11 @@ class Cache:
         Path(name).replace(self._path(key))
 
     def tidy(self) -> None:
-        """Remove the entries that were not used for longest."""
-        entries = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime) if self.folder.exists() else []
-        for path in entries[:-_KEPT]:
-            path.unlink(missing_ok=True)
+        """Remove the entries that were not used for longest, unless another process is just writing one."""
+        with contextlib.suppress(FileNotFoundError):
+            entries = sorted(self.folder.iterdir(), key=lambda path: path.stat().st_mtime)
+            for path in entries[:-_KEPT]:
+                path.unlink(missing_ok=True)
 
     def _path(self, key: str) -> Path:
         return self.folder / key
