@@ -85,10 +85,6 @@ LATTICE = 17
 """The angle of joint k, counted from 0, is turned this to the power of k times as far, modulo `SCANNED`: the values of
 several free angles are a lattice. It is prime to `SCANNED`.
 """
-STARTS = 13
-"""At last steps are taken from so many values of free angles: one step alone does not tell how near a start is where a
-later angle is free next to one value alone.
-"""
 PASSES = 64
 """The largest number of steps from each start: next to a double root every step leaves a third of the error."""
 STALLED = sp.Float("0.999")

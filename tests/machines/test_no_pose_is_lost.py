@@ -68,28 +68,6 @@ def test_where_three_singularities_meet(name: str) -> None:
     every_pose_is_met(machine, axes, axes, 1e-10)
 
 
-IN_PLANE = (
-    (-90.000001, -180.0, 180.0, -180.0, 179.9999999, 0.0), (-180.0, 180.0, 0.0, 179.999, -179.9999999999999, 180.0),
-    (180.0, 1e-10, -179.99, 180.0, -180.0, 180.0), (-90.01, 0.0, 0.0, 180.0, 4.647399040993747, -96.34009732924815),
-    (0.0, -180.0, 0.0, 180.0, -0.1, 0.0), (90.0, -180.0, 0.0, 0.0, 0.1, -180.0),
-)  # fmt: skip
-"""Joints (degrees) with the wrist on axis 1, which is free; the pose is met next to one value of it alone, where axis 5
-is free, too.
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["arm with three parallel axes, in one plane"])
-def test_a_free_axis_is_turned_to_where_a_later_one_is_free(name: str) -> None:
-    machine = made(name)
-    axes = np.array(IN_PLANE) + machine.closure.offsets
-    positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
-    zero = np.zeros_like(axes) + machine.closure.offsets
-    found, statuses = machine.robot.inverse_batch(positions, rotations, configurations, zero)
-    assert (statuses == Status.OK).all()
-    assert machine.error(found, positions, rotations).max() <= 1e-11
-
-
 @pytest.mark.parametrize("name", ["slide that a head points, beside its axis"])
 def test_no_slide_goes_further_than_an_input_may(name: str) -> None:
     """A tool that is nearly along the slide meets its pose at a second root, which may be 1e11 away."""

@@ -5,10 +5,9 @@ the damping d is a share of its size. A fold or a free angle is no special case:
 move. A solution counts if its error is rounding, and no branch has the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
-them turned to where one step leaves the least error, of many values around the circle; at last, with them at some of
-these values, steps are taken from each. If the steps meet the pose on another branch, nearly free angles are known from
-there, and the closed form is taken again; if that leads to the same branch, the joint of its two roots is mirrored
-about the start.
+them turned to where one step leaves the least error, of many values around the circle. If the steps meet
+the pose on another branch, nearly free angles are known from there, and the closed form is taken again; if that
+leads to the same branch, the joint of its two roots is mirrored about the start.
 """
 
 from __future__ import annotations
@@ -29,7 +28,6 @@ from derive.ir.constants import (
     REFINED,
     SCANNED,
     SHARE_OF_DAMPING,
-    STARTS,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
@@ -49,7 +47,6 @@ from derive.kinematics.lost_digits.starts import (
     FREE_TURN,
     GOAL,
     IS_MET,
-    LAST,
     LEFT,
     LEFT_NOW,
     LEFT_OVER,
@@ -59,6 +56,7 @@ from derive.kinematics.lost_digits.starts import (
     NEAREST_NOW,
     NEAREST_TURN,
     NEAREST_TURN_NOW,
+    SCAN_ENDS,
     STEP,
     TURN,
     closed_form,
@@ -141,7 +139,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
         following=(
             *(_next(machine, j, at_reference.get(j, starts[j])) for j in joints),
             Select(ANOTHER, Select(is_scan(following), _ZERO, sp.Integer(PASSES)), LEFT_NOW),
-            Select(ENDS, sp.Integer(LAST + 1), following),
+            Select(ENDS, sp.Integer(SCAN_ENDS + 1), following),
             Select(sp.Or(ANOTHER, MIRRORS), FIRST, real("error")),
             NEAREST_NOW,
             NEAREST_TURN_NOW,
@@ -149,8 +147,8 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
             Select(refines(following), -BESIDE / Select(sp.Gt(BESIDE, 0), _ONE, sp.Integer(2)), BESIDE),
             *(_next_share() for _ in states),
         ),
-        done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, LAST)), ENDS),
-        limit=(3 + STARTS + moves) * (PASSES + 1) + SCANNED + REFINED,
+        done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, SCAN_ENDS)), ENDS),
+        limit=(3 + moves) * (PASSES + 1) + SCANNED + REFINED,
         otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )

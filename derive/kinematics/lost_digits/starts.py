@@ -18,7 +18,6 @@ from derive.ir.constants import (
     REFINED,
     SCANNED,
     STALLED,
-    STARTS,
 )
 from derive.ir.passes import needed_for
 from derive.ir.primitives import Select, ToReal
@@ -45,9 +44,8 @@ STEP = sp.Rational(360, SCANNED)
 """How far (degrees) free angles are turned from one attempt of the scan to the next."""
 SCAN_ENDS = SCANNED + REFINED + 2
 """The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, some
-beside the nearest, ever closer, and this one from the nearest of all. Then `STARTS` of the lattice.
+beside the nearest, ever closer, and this one from the nearest of all.
 """
-LAST = SCAN_ENDS + STARTS
 OFTEN_FREE = sp.Float("0.1")
 """The conditioning at which the closed form of a drawing tells little of an angle of a machine with deviations."""
 BEYOND = real("beyond_the_start")
@@ -68,10 +66,7 @@ def next_attempt(following: sp.Symbol, deviates: bool) -> tuple[Let, ...]:
     nearer = flag("is_nearer")
     far = Select(refines(following), BESIDE, _ZERO)
     far_from_free, nearer_free = (OFTEN_FREE, OFTEN_FREE) if deviates else (DOUBTFUL, NEARLY_FREE)
-    is_nearest, is_turned = sp.Gt(following, SCANNED + 1), sp.Gt(following, SCAN_ENDS)
-    scanned = Select(sp.And(is_nearest, sp.Not(is_turned)), nearer_free, far_from_free)
-    free = Select(sp.Gt(following, 0), scanned, FREE_ANGLE)
-    around = sp.Rational(360, STARTS) * ToReal(following - SCAN_ENDS)
+    free = Select(sp.Gt(following, 0), Select(sp.Gt(following, SCANNED + 1), nearer_free, far_from_free), FREE_ANGLE)
     cost = Select(sp.Gt(real("error"), STALLED * BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
     return (
         Let(ANOTHER, sp.Le(LEFT, 0)),
@@ -85,7 +80,7 @@ def next_attempt(following: sp.Symbol, deviates: bool) -> tuple[Let, ...]:
         Let(NEAREST_TURN_NOW, Select(nearer, TURN, NEAREST_TURN)),
         Let(
             FREE_TURN,
-            Select(is_turned, around, Select(is_nearest, NEAREST_TURN_NOW + far, STEP * ToReal(following - 1))),
+            Select(sp.Gt(following, SCANNED + 1), NEAREST_TURN_NOW + far, STEP * ToReal(following - 1)),
             "how far free angles are turned",
         ),
     )
