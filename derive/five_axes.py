@@ -58,14 +58,22 @@ class _Axis:
 
 
 def five_axes(
-    name: str, *, head: str = "", table: str = "", nutating: bool = False, location_errors: bool = False, **fields: Any
+    name: str,
+    *,
+    head: str = "",
+    table: str = "",
+    nutating: bool = False,
+    location_errors: bool = False,
+    tool_vector: bool = False,
+    **fields: Any,
 ) -> Mechanism:
     """The description of a five-axis machine, by the letters of the turning axes in its head and in its table.
 
     `table="AC"` is a table C on a trunnion A, `head="CB"` a head B on a fork C. If it is `nutating`, the trunnion, or
     the axis of the head next to the tool, is inclined to Z by a parameter. With `location_errors` each turning axis has
     parameters for the errors of its place and its direction, against what carries it, with the names of ISO 230-7,
-    and the slides Y and Z have those of their squareness. `fields` are further fields of the `Mechanism`. Raises
+    and the slides Y and Z have those of their squareness. With a `tool_vector` the tip may be beside the axis of the
+    spindle: it has parameters x and y beside its length. `fields` are further fields of the `Mechanism`. Raises
     `DescriptionError` for any other order.
     """
     if (head, table) not in ORDERS.values():
@@ -82,12 +90,13 @@ def five_axes(
         for letter in head + table
     }
     offsets = {p.name: p for p in _offsets(head, table)}
+    beside = tuple(_beside()) if tool_vector else ()
     slides, squareness = _slides(head, table), _squareness() if location_errors else {}
     chain = _to_workpiece(table, axes, offsets) * Tx(slides[0])
     for letter, slide in zip("BC", slides[1:], strict=True):
         tilts = _product(_TURN[other](radians(tilt)) for other, tilt in squareness.get(letter, {}).items())
         chain *= tilts * _SHIFT[letter](slide) * _back(tilts)
-    chain *= _to_tool(head, axes, offsets)
+    chain *= _to_tool(head, axes, offsets) * _product(_SHIFT[a](p) for a, p in zip("AB", beside, strict=False))
     tilt = (sp.sin if outer == "C" else sp.cos)(axes[inner].joint)
     if location_errors:
         tilt = _tilt(head, table, chain, axes)
@@ -101,7 +110,7 @@ def five_axes(
     }
     return Mechanism(
         name=name,
-        parameters=(*offsets.values(), *([nutation] if nutating else []), *errors),
+        parameters=(*offsets.values(), *beside, *([nutation] if nutating else []), *errors),
         joints=(*slides, *(axis.joint for axis in axes.values())),
         chain=chain,
         task=Task("xyz", Turning.DIRECTION),
@@ -206,6 +215,13 @@ def _offsets(head: str, table: str) -> Iterator[Parameter]:
     yield distance("head_offset", meaning, nominal=lengths[0])
     meaning = f"Axis {inner} to the tip of the tool, along the spindle"
     yield distance("pivot_length", meaning, nominal=lengths[1])
+
+
+def _beside() -> Iterator[Parameter]:
+    """Where the tip of the tool is beside the axis of the spindle."""
+    for line in "XY":
+        meaning = f"Axis of the spindle to the tip of the tool, along {line} with the axes at zero"
+        yield distance(f"tool_{line.lower()}", meaning, nominal=6.0)
 
 
 def _slides(head: str, table: str) -> list[Joint]:

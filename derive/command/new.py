@@ -61,6 +61,8 @@ from derive.five_axes import five_axes
 
 MECHANISM = five_axes("{name}", {words})
 '''
+_FURTHER = ("nutating", "location_errors", "tool_vector")
+"""What a machine with five axes may have beside its order."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,13 +74,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--nutating", action="store_true", help=text)
     text = "with --five-axis: parameters for the errors of the place and the direction of each turning axis"
     parser.add_argument("--location-errors", action="store_true", help=text)
+    text = "with --five-axis: parameters tool_x and tool_y, for a tip of the tool beside the axis of the spindle"
+    parser.add_argument("--tool-vector", action="store_true", help=text)
     parser.set_defaults(run=new)
 
 
 def new(options: argparse.Namespace) -> int:
     """Write the description; raises `DescriptionError` where there is a file already, or a word stands alone."""
-    if options.five_axis is None and (options.nutating or options.location_errors):
-        raise DescriptionError("--nutating and --location-errors say more of --five-axis ORDER: add it")
+    if options.five_axis is None and any(getattr(options, word) for word in _FURTHER):
+        raise DescriptionError("--nutating, --location-errors and --tool-vector say more of --five-axis ORDER: add it")
     path: Path = options.file
     path = path if path.suffix == ".py" else path.with_name(f"{path.name}.py")
     name = "".join(word[:1].upper() + word[1:] for word in re.split(r"[^A-Za-z0-9]+", path.stem))
@@ -101,5 +105,5 @@ def description(file: str, name: str) -> str:
 def _five_axes(file: str, name: str, options: argparse.Namespace) -> str:
     head, table = ORDERS[options.five_axis]
     words = [f'{place}="{axes}"' for place, axes in (("head", head), ("table", table)) if axes]
-    words += [f"{word}=True" for word in ("nutating", "location_errors") if getattr(options, word)]
+    words += [f"{word}=True" for word in _FURTHER if getattr(options, word)]
     return _FIVE_AXES.format(file=file, name=name, order=options.five_axis, words=", ".join(words))

@@ -29,6 +29,7 @@ def tool(head: str, table: str, p: Mapping[str, float], q: Array) -> tuple[Array
 
     side = X if head.endswith("B") else Y
     held = p["head_offset"] * side - p["pivot_length"] * Z if head else -p["tool_length"] * Z
+    held = held + p.get("tool_x", 0.0) * X + p.get("tool_y", 0.0) * Y
     tip, rotation = np.tile(held, (q.shape[1], 1)), np.tile(np.eye(3), (q.shape[1], 1, 1))
     for k, letter in enumerate(reversed(head)):
         place, lean = stand(letter)

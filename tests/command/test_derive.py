@@ -196,13 +196,14 @@ def test_new_writes_a_description_that_can_be_derived(folder: Folder) -> None:
 
 def test_new_writes_a_five_axis_machine(folder: Folder) -> None:
     """Of any order, inclined and with errors if that is asked; words that say more of it do not stand alone."""
-    assert folder.run("new", "--five-axis", "HeadTable_BA", "--nutating", "--location-errors", "my_mill.py").status == 0
+    words = ("--nutating", "--location-errors", "--tool-vector")
+    assert folder.run("new", "--five-axis", "HeadTable_BA", *words, "my_mill.py").status == 0
     text = (folder.path / "my_mill.py").read_text()
-    assert 'five_axes("MyMill", head="B", table="A", nutating=True, location_errors=True)' in text
+    assert 'five_axes("MyMill", head="B", table="A", nutating=True, location_errors=True, tool_vector=True)' in text
     said = folder.run("check", "my_mill.py")
     assert (said.status, said.err) == (0, "") and "2 solutions  exact" in said.out
     said = folder.run("new", "--nutating", "other.py")
-    assert said.status == 2 and "--nutating and --location-errors say more of --five-axis ORDER: add it" in said.err
+    assert said.status == 2 and "and --tool-vector say more of --five-axis ORDER: add it" in said.err
     assert not (folder.path / "other.py").exists()
 
 

@@ -69,6 +69,12 @@ THREE_LENGTHS = {
         _tilt(B),
         joints=(X, Y, Z, B, C),
     ),
+    "inclined head over a table on a trunnion": _machine(
+        "InclinedOverTrunnion",
+        Rz(-C) * Rx(-A) * SLIDES * Rx(INCLINED) * Rz(A4) * Rx(-INCLINED) * Tz(-L4),
+        POSE,
+        joints=(X, Y, Z, A, A4, C),
+    ),
     "oblique slides on a table": _machine(
         "Oblique",
         Rz(C) * Tx(X) * Rz(pi / 5) * Ty(Y) * Rx(pi / 7) * Tz(Z) * Rx(-pi / 7) * Rz(-pi / 5),
@@ -240,6 +246,6 @@ COSTLY = (
     "arm with three parallel axes", "across its last axis", "by a table with angles", "by a table, the last held",
     "head points, beside its axis", "may lie on its second axis", "seven axes beside each other",
     "three axes that miss", "three axes with offsets", "tilting arm points", "with a wrist",
-    "with an elbow and a wrist", "wrist goes sideways",
+    "inclined head over", "tilts its tool", "with an elbow and a wrist", "wrist goes sideways",
 )  # fmt: skip
 """Words of those that take seconds to be derived: `make sweep` asks them."""

@@ -137,6 +137,11 @@ WITH_ABSOLUTE_JOINTS = {
         _bent(A2 - A1),
         offset_interface=True,
     ),
+    "palletizer that tilts its tool": _machine(
+        "TiltingPalletizer",
+        _COLUMN * Ry(A2) * Tz(L1) * Ry(A3 - A2) * Tx(L2) * Ry(-A3) * Tx(BESIDE) * Tz(-L4) * Rz(A4) * Ry(A5),
+        DIRECTION,
+    ),
     "arm with its elbow motor on the base, and gears": _machine(
         "GearedBelts",
         Tz(HEIGHT) * Rz(A1 / 2) * Ry(A2 / 3) * Tz(L2) * Ry(A3 / 4 - A2 / 3) * Tx(L3),
@@ -154,6 +159,7 @@ UNNAMED = {
     10: ("six axes by a table with angles as numbers",),
     8: (
         "arm whose wrist goes sideways",
+        "palletizer that tilts its tool",
         "arm whose tool points across its last axis",
         "arm with an elbow that is held, whose shoulder is beside its base",
         "arm with an elbow that is held, whose flange is beside its wrist",
@@ -166,6 +172,10 @@ UNNAMED = {
         "seven axes by a table, the last held",
         "seven axes with an elbow and a wrist beside them, the last held",
     ),
-    2: ("finger that folds onto the second of two parallel axes", "head whose second axis leans by 45 degrees"),
+    2: (
+        "finger that folds onto the second of two parallel axes",
+        "head whose second axis leans by 45 degrees",
+        "inclined head over a table on a trunnion",
+    ),
 }
 """By the number of solutions; all other machines whose branches the compiler names have 4."""

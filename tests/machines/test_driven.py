@@ -16,7 +16,12 @@ from derive.mechanism import DescriptionError, Mechanism, Task, distance, driven
 from tests.catalogue import test_forward, test_jacobian
 from tests.catalogue.driven_machines import DrivenClosure, DrivenMachine
 from tests.catalogue.machines import Machine
+from tests.languages.language import Language
+from tests.machines.both import forward_in_both, inverse_in_both
 from tests.machines.made import built_of, imported_class
+from tests.machines.spoken import EVERY_OTHER
+from tests.text.controller import OK, Controller
+from tests.text.units import compiled_text
 
 THIGH, SHANK = length("thigh", "Hip to knee", nominal=400.0), length("shank", "Knee to foot", nominal=380.0)
 HEEL = length("heel", "Knee to the rod, on the shank", nominal=70.0)
@@ -68,6 +73,9 @@ MODES: dict[str, list[dict[str, int]]] = {
     "DrivenLeg": [{"knee_side": a, "crank_side": b} for a in (1, -1) for b in (1, -1)],
     "DrivenShaper": [{}],
 }
+
+OPEN = {"DrivenLeg": (900.0, 50.0), "DrivenShaper": (15.0 + 90.0, 0.0)}
+"""Axes at which a loop does not close."""
 
 
 @cache
@@ -135,6 +143,46 @@ def _every(machine: DrivenMachine, position: np.ndarray) -> list[np.ndarray]:
         joints = [[position[0] - values["arm"] * np.cos(turn), turn] for turn in turns]
     axes = machine.closure.axes(np.array(joints))
     return [row for row in axes if np.isfinite(row).all()]
+
+
+@EVERY_OTHER
+@pytest.mark.parametrize("mechanism", [LEG, SHAPER], ids=lambda one: one.name)
+def test_other_languages_answer_as_python(language: Language | None, mechanism: Mechanism) -> None:
+    """In every mode: poses, all solutions and the Jacobian through the loops, and a refusal where a loop is open."""
+    built, known = built_of(validate(mechanism)), validate(mechanism)
+    program = language.of(known) if language else compiled_text(f"{known.name}.st", built.parts["st"]["text"])
+    for mode in MODES[mechanism.name]:
+        machine = machine_of(mechanism, mode)
+        robot, axes = machine.robot, machine.draw(8, np.random.default_rng(4)).tolist()
+        poses = [(row, robot.forward(row)[0]) for row in axes]
+        assert robot.forward_batch([OPEN[mechanism.name]])[3].tolist() == [Status.IMPOSSIBLE]
+        if language is None:
+            _confirm_block(Controller(program, known), machine, poses)
+            continue
+        calls = [[call, row] for call in ("forward", "jacobian") for row in axes]
+        calls += [["inverseAll", {"position": f.position, "rotation": f.rotation}, row] for row, f in poses]
+        given = {"parameters": dict(robot.parameters), "calls": [["forward", OPEN[mechanism.name]], *calls]}
+        refused, *found = language.ask(program, [given])[0]["found"]
+        assert refused["status"] == Status.IMPOSSIBLE
+        for k, (row, frame) in enumerate(poses):
+            there, rates, every = found[k :: len(axes)]
+            assert there["frame"]["position"] == pytest.approx(frame.position, abs=1e-9)
+            assert np.allclose(rates["rows"], robot.jacobian(row), rtol=1e-9, atol=1e-9)
+            for one, other in zip(robot.inverse_all(frame, row), every["slots"], strict=True):
+                assert int(one.status) == other["status"]
+                assert one.axes is None or other["axes"] == pytest.approx(one.axes, abs=1e-7)
+
+
+def _confirm_block(block: Controller, machine: DrivenMachine, poses: list[tuple[list[float], softkin.Frame]]) -> None:
+    """The same of a block, whose Jacobian has a row for each of six coordinates, in the order of the task."""
+    assert block.initialise(machine.robot.parameters) == OK
+    assert block.forward(OPEN[machine.mechanism.name])[0] == Status.IMPOSSIBLE.softmotion
+    for row, frame in poses:
+        assert forward_in_both(block, machine.robot, row, machine.reach) is not None
+        assert inverse_in_both(block, machine.robot, frame, row)
+        expected = np.array(machine.robot.jacobian(row))
+        status, rates = block.jacobian(row)
+        assert status == OK and np.allclose(np.array(rates)[:2, :2], expected, rtol=1e-9, atol=1e-9)
 
 
 def test_both_assembly_modes_have_the_same_axes_and_other_poses() -> None:

@@ -18,7 +18,7 @@ from tests.mechanisms import catalogue
 
 Array = NDArray[np.float64]
 LENGTHS = {"pivot_x": 30.0, "pivot_y": -40.0, "pivot_z": 55.0, "tool_length": 120.0, "fork_offset": 25.0,
-           "head_offset": -15.0, "pivot_length": 200.0}  # fmt: skip
+           "head_offset": -15.0, "pivot_length": 200.0, "tool_x": 7.0, "tool_y": -11.0}  # fmt: skip
 NUTATION = 52.0
 VARIANTS = [
     *((order, is_nutating, False) for order in ORDERS for is_nutating in (False, True)),
@@ -29,9 +29,11 @@ PRESENT = (12.0, -7.0, 33.0)
 
 
 @cache
-def machine(order: str, nutating: bool, errors: bool) -> softkin.Mechanism:
+def machine(order: str, nutating: bool, further: bool) -> softkin.Mechanism:
+    """If there is `further`, axes have errors of their location, and the tip is beside the axis of the spindle."""
     head, table = ORDERS[order]
-    described = five_axes("FiveAxes", head=head, table=table, nutating=nutating, location_errors=errors)
+    more = {"location_errors": further, "tool_vector": further}
+    described = five_axes("FiveAxes", head=head, table=table, nutating=nutating, **more)
     names = [p.name for p in described.parameters]
     given = {name: LENGTHS[name] for name in names if name in LENGTHS} | ({"nutation": NUTATION} if nutating else {})
     given |= {name: 0.3 + 0.1 * k for k, name in enumerate(names) if name not in given}
@@ -51,10 +53,10 @@ def values(solutions: Sequence[softkin.Solution]) -> Array:
     return np.array([s.axes for s in solutions])
 
 
-@pytest.mark.parametrize(("order", "nutating", "errors"), VARIANTS)
-def test_both_solutions_bring_the_tool_there(order: str, nutating: bool, errors: bool) -> None:
+@pytest.mark.parametrize(("order", "nutating", "further"), VARIANTS)
+def test_both_solutions_bring_the_tool_there(order: str, nutating: bool, further: bool) -> None:
     """Forward kinematics is the chain; the inverse has the pose itself and another one, on the nearest turns."""
-    robot = machine(order, nutating, errors)
+    robot = machine(order, nutating, further)
     for axes in np.random.default_rng(3).uniform((-80,) * 3 + (-500,) * 2, (80,) * 3 + (500,) * 2, (25, 5)):
         tip, direction = tool(robot, order, axes)
         frame, configuration = robot.forward(axes)
@@ -85,10 +87,10 @@ def test_at_the_pole_the_last_axis_stays(order: str) -> None:
         assert solution.axes is not None and solution.axes[place] == pytest.approx(310.0)
 
 
-@pytest.mark.parametrize(("order", "nutating", "errors"), VARIANTS)
-def test_a_tilted_plane_turns_the_tool_alone(order: str, nutating: bool, errors: bool) -> None:
+@pytest.mark.parametrize(("order", "nutating", "further"), VARIANTS)
+def test_a_tilted_plane_turns_the_tool_alone(order: str, nutating: bool, further: bool) -> None:
     """Both solutions have the normal along the tool; slides stay, in radians as in degrees, with a base, too."""
-    robot = machine(order, nutating, errors)
+    robot = machine(order, nutating, further)
     base = Frame.from_euler(20.0, 70.0, -40.0, (5.0, 6.0, 7.0))
     for turned in np.random.default_rng(4).uniform(-200.0, 200.0, (10, 2)):
         present = np.array([*PRESENT, *turned])

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 class CalibratedPrograms(Programs):
     """The programs of a serial machine with deviations."""
 
+    machine: Calibrated
+
     def __init__(self, machine: Calibrated) -> None:
         """machine: on plain numbers."""
         self.machine, self.nominal = machine, machine.nominal._array_programs()
@@ -96,6 +98,8 @@ class CalibratedPrograms(Programs):
 
 class GainedPrograms(RadianPrograms):
     """The programs of a closed loop with deviations: those of a loop with its dimensions, and the gains of the axes."""
+
+    machine: Calibrated
 
     def __init__(self, machine: Calibrated, part: Programs) -> None:
         """part: the programs of the loop with its dimensions."""

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 class MountedPrograms(Programs):
     """The programs of a mounted machine."""
 
+    machine: Mounted
+
     def __init__(self, machine: Mounted, programs: Programs, kind: str, shift: OneVector | None) -> None:
         """programs: those of the bare machine. shift: from the flange to the tool, where it is the same everywhere."""
         self.machine, self.programs, self.kind, self.shift = machine, programs, kind, shift
