@@ -43,7 +43,8 @@ def generate(options: argparse.Namespace) -> int:
         replace_parts(options.output, files)
     elif any(differences(options.output, files)):
         replace_folder(options.output, files)
-    print(f"{len(files)} files in {options.output}")
+    only = next(iter(files)) if len(files) == 1 else None
+    print(f"{len(files)} files in {options.output}" if only is None else f"written: {options.output / only}")
     return max([*statuses, 1 if unread else 0])
 
 

@@ -5,7 +5,7 @@ unnamed branches it shows how to name them.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ import sympy as sp
 from derive.command.own import described, each
 from derive.command.report import opened, written
 from derive.command.stages import Stages
-from derive.description.catalogue import load
+from derive.description.catalogue import load_with_variables
 from derive.description.mechanism import Mechanism
 from derive.faults import error
 from derive.ir.text import text_of
@@ -32,12 +32,12 @@ def explain(options: argparse.Namespace) -> int:
     """Print the derivation of every machine, or write its page; 2 where one of them cannot be derived."""
 
     def explained(path: Path, stages: Stages) -> None:
-        mechanism = load(path)
+        mechanism, variables = load_with_variables(path)
         if options.html:
             opened(written(path, mechanism, options.out, stages))
             return
         try:
-            for line in programs(mechanism) if options.programs else explanation(mechanism):
+            for line in programs(mechanism) if options.programs else explanation(mechanism, variables):
                 stages.line(line)
         except Exception as problem:
             raise error(path, problem) from None
@@ -53,8 +53,11 @@ def programs(mechanism: Mechanism) -> Iterator[str]:
         yield from text_of(program).split("\n")
 
 
-def explanation(mechanism: Mechanism) -> Iterator[str]:
-    """The lines of one machine. Raises `Unsolved` or `DescriptionError` if it cannot be derived."""
+def explanation(mechanism: Mechanism, variables: Mapping[str, str] | None = None) -> Iterator[str]:
+    """The lines of one machine. Raises `Unsolved` or `DescriptionError` if it cannot be derived.
+
+    The lines to be put into its file are written in `variables`: those of the file, by names of joints and parameters.
+    """
     try:
         solution = with_free_names(mechanism, lambda further: solve_machine(prepared(mechanism, further)))
     except Unsolved as stuck:
@@ -68,8 +71,8 @@ def explanation(mechanism: Mechanism) -> Iterator[str]:
         yield f"{where}{derived.searched.name} is searched for roots: a trial takes it as known."
     for route in derived.inverse:
         yield from _route(derived.mechanism, route)
-    yield from _branches(derived.mechanism)
-    yield from _forward(derived)
+    yield from _branches(derived.mechanism, variables)
+    yield from _forward(derived, variables)
 
 
 def _route(mechanism: Mechanism, route: Route) -> Iterator[str]:
@@ -106,7 +109,7 @@ def _step(mechanism: Mechanism, step: ExplainedStep) -> Iterator[str]:
         yield f"       Initialize refuses a machine where {_plain(condition)} = 0"
 
 
-def _branches(mechanism: Mechanism) -> Iterator[str]:
+def _branches(mechanism: Mechanism, variables: Mapping[str, str] | None) -> Iterator[str]:
     """The lines on the branches: their names, or how to name them."""
     if not mechanism.branches:
         yield "Branches: none, every pose has one solution"
@@ -123,14 +126,16 @@ def _branches(mechanism: Mechanism) -> Iterator[str]:
             yield f"       {sign if mechanism.search.is_eliminated else rises};"
             yield f"       of the roots of one branch the answer is next to the reference, or has the nearest {joint}"
             continue
-        indicator = in_words(mechanism, branch.indicator)
+        indicator = in_words(mechanism, branch.indicator, variables)
         yield f'  branch("{branch.name}", {indicator}, {signs})'
         if branch.meanings[0]:
             first, second = branch.meanings
             yield f"       derived, to be named: 1 {branch.names[0]} where {first}, 2 {branch.names[1]} where {second}"
+    if any(branch.meanings[0] for branch in mechanism.branches):
+        yield "  If your machine only has the positive side of a branch: positive=(its expression,), and no such branch"
 
 
-def _forward(derived: Derived) -> Iterator[str]:
+def _forward(derived: Derived, variables: Mapping[str, str] | None) -> Iterator[str]:
     """The steps of the forward kinematics of a closed loop; a chain has none."""
     mechanism = derived.mechanism
     yield "Forward kinematics"
@@ -144,7 +149,7 @@ def _forward(derived: Derived) -> Iterator[str]:
         yield f"  assembly {way.name}: {way.parameter} chooses the second mode"
         if way.meanings[0]:
             signs = ", ".join(f"{n}={s:+d}" for n, s in zip(way.names, way.signs, strict=True))
-            indicator = in_words(mechanism, way.indicator)
+            indicator = in_words(mechanism, way.indicator, variables)
             yield f'  assembly("{way.name}", {indicator}, margin="{way.margin}", {signs})'
             first, second = way.meanings
             yield f"       derived, to be named: {way.names[0]} where {first}; {way.names[1]} where {second}"

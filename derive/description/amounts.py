@@ -80,7 +80,8 @@ def _wrong_turn(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
     number, place = number_in(factor.amount), written(factor)
     literal = sp.sstr(number, full_prec=False)
     if not number.has(sp.pi, DEGREE) and abs(in_radians(number)) > 2 * float(sp.pi):
-        yield f"{place} of the chain turns by {literal} radians, more than a full turn: write {literal}*DEGREE"
+        meant = f"write radians({literal}), which derive.mechanism has"
+        yield f"{place} of the chain turns by {literal} radians, more than a full turn: {meant}"
     for parameter in mechanism.parameters:
         if parameter.symbol not in factor.amount.free_symbols:
             continue

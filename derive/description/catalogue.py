@@ -11,7 +11,9 @@ from importlib.util import module_from_spec
 from pathlib import Path
 from types import ModuleType
 
+from derive.description.dimensions import Parameter
 from derive.description.fields import is_field
+from derive.description.joints import Joint
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.description.places import in_place, line_of_field
 from derive.description.remedies import did_you_mean, with_remedy
@@ -51,7 +53,18 @@ def catalogue_and_faults(folder: Path) -> tuple[tuple[Entry, ...], list[str]]:
 
 def load(path: Path) -> Mechanism:
     """The mechanism that a file describes; raises `DescriptionError` naming the file, the line, and what is wrong."""
-    mechanism = vars(_executed(path)).get("MECHANISM")
+    return load_with_variables(path)[0]
+
+
+def load_with_variables(path: Path) -> tuple[Mechanism, dict[str, str]]:
+    """As `load`, and the variable of the file for the name of each joint and parameter that has one."""
+    values = vars(_executed(path))
+    variables = {value.name: word for word, value in values.items() if isinstance(value, Joint | Parameter)}
+    return _mechanism_of(path, values.get("MECHANISM")), variables
+
+
+def _mechanism_of(path: Path, mechanism: object) -> Mechanism:
+    """The mechanism of a file, validated."""
     if not isinstance(mechanism, Mechanism):
         raise DescriptionError(in_place(path, "defines no MECHANISM"))
     try:

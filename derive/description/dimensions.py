@@ -165,9 +165,9 @@ def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9, defa
     return Parameter(_value_of(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, given, shown)
 
 
-def radians(parameter: Parameter) -> sp.Expr:
-    """An angle parameter in radians, as sines and cosines take it."""
-    return parameter * DEGREE
+def radians(angle: Parameter | float) -> sp.Expr:
+    """An angle in degrees, a parameter or a number, in radians, as sines and cosines take it."""
+    return angle * DEGREE
 
 
 def flag(name: str, meaning: str, *, nominal: bool = False) -> Parameter:

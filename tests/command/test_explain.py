@@ -55,6 +55,37 @@ def test_branches_that_nobody_named_stand_there_to_be_named(folder: Folder) -> N
     assert line in said.out and "to be named" not in said.out
 
 
+POLAR = """
+from derive.frames import Rz, Tx
+from derive.mechanism import Mechanism, Task, branch, distance, linear, rotary
+
+OFFSET = distance("offset_of_slide", "Axis A1 to the slide at zero", nominal=400.0)
+TURN_OF_ARM = rotary("A1", "Arm about Z")
+SLIDE = linear("R", "Slide", nominal=100.0)
+MECHANISM = Mechanism(
+    name="MyPolar",
+    parameters=(OFFSET,),
+    joints=(TURN_OF_ARM, SLIDE),
+    chain=Rz(TURN_OF_ARM) * Tx(OFFSET + SLIDE),
+    task=Task("xy"),
+)
+"""
+
+
+def test_the_line_to_be_named_is_in_the_variables_of_the_file(folder: Folder) -> None:
+    """Where they differ from the names of lengths and axes; so the line can be put into the file as it stands."""
+    folder.write("my_polar.py", POLAR)
+    said = folder.run("explain", "my_polar.py")
+    (line,) = re.findall(r'^  (branch\(".*\))$', said.out, re.MULTILINE)
+    assert line.endswith(", OFFSET + SLIDE, positive=+1, negative=-1)")
+    assert "positive=(its expression,)" in said.out
+    folder.write("my_polar.py", POLAR.replace('Task("xy"),', f'Task("xy"),\n    branches=({line},),'))
+    said = folder.run("explain", "my_polar.py")
+    assert said.status == 0 and line in said.out and "to be named" not in said.out
+    folder.write("my_polar.py", POLAR.replace('Task("xy"),', 'Task("xy"),\n    positive=(OFFSET + SLIDE,),'))
+    assert "every pose has one solution" in folder.run("explain", "my_polar.py").out
+
+
 @pytest.mark.parametrize(
     ("file", "lines"),
     [

@@ -35,6 +35,7 @@ SAID_ELSEWHERE = {
     "the search misses … of … solutions; leave search= out": "tests/unit/witness/test_refusals",
     "the home pose has … assembly modes": "tests/unit/witness/test_refusals",
     "… holds '…', which was not generated: it is not replaced": "test_derive",
+    "… holds '…' of another machine: take another folder, or remove it": "test_derive",
     "… holds the machine '…': derive into another folder with --out, or remove it": "test_derive",
     "'…' is a package that exists: give another name with --package": "test_derive",
     "'…' cannot name a Python package: give another one with --package": "test_derive",

@@ -279,7 +279,7 @@ def _notes(file: File, joints: Mapping[str, object], passed: Container[str]) -> 
     left = [name for name in joints if name not in passed]
     notes = [f"Left out, because they are not between base and tip: {listed(left)}."] if left else []
     if file.root.find(".//geom") is not None:
-        notes.append("Not read, because kinematics does not need them: masses, meshes, collision bodies.")
+        notes.append("Not in the description, because kinematics does not need them: masses, meshes, collision bodies.")
     if file.root.find("tendon") is not None:
         notes.append("Not read: tendons. Axis values are the joint values of the file.")
     return tuple(notes)

@@ -230,7 +230,7 @@ def _ignored(root: Element) -> tuple[str, ...]:
         "collision": "collision bodies",
     }
     found = [word for tag, word in tags.items() if root.find(f"link/{tag}") is not None]
-    notes = [f"Not read, because kinematics does not need them: {', '.join(found)}."] if found else []
+    notes = [f"Not in the description, because kinematics does not need them: {', '.join(found)}."] if found else []
     return tuple(notes)
 
 

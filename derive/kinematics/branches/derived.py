@@ -6,7 +6,7 @@ positive for every machine. So a reader sees the meaning of both signs, and can 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -137,15 +137,19 @@ def _meanings(mechanism: Mechanism, indicator: sp.Expr) -> tuple[str, str]:
     return f"{angle} is between -90 and 90 degrees", f"{angle} is beyond 90 degrees on either side"
 
 
-def in_words(mechanism: Mechanism, value: sp.Expr) -> str:
-    """An expression in the names of the description."""
+def in_words(mechanism: Mechanism, value: sp.Expr, variables: Mapping[str, str] | None = None) -> str:
+    """An expression in the names of the description, or in the variables of its file where they are given."""
+    written = variables or {}
     own = {j.name for j in mechanism.joints}
     names = {s: sp.Symbol(s.name.upper()) for s in POSITION if s.name.upper() not in own}
-    names |= {j.symbol: sp.Symbol(j.moved_name) for j in mechanism.joints}
+    names |= {j.symbol: sp.Symbol(written.get(j.moved_name, j.moved_name)) for j in mechanism.joints}
+    given = {p.symbol: written.get(p.given_name, p.given_name) for p in mechanism.parameters}
     angles = {
-        DEGREE * p.symbol: sp.Symbol(f"radians({p.given_name})") for p in mechanism.parameters if p.role is Role.ANGLE
+        DEGREE * p.symbol: sp.Symbol(f"radians({given[p.symbol]})")
+        for p in mechanism.parameters
+        if p.role is Role.ANGLE
     }
-    names |= {p.symbol: sp.Symbol(p.given) for p in mechanism.parameters if p.given}
+    names |= {p.symbol: sp.Symbol(given[p.symbol]) for p in mechanism.parameters if p.given or p.given_name in written}
     return str(sp.sympify(value).subs(angles).xreplace(names))
 
 

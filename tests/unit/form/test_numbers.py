@@ -158,7 +158,7 @@ REFUSED = {
     ),
     "degrees for radians": (
         described(Rz(A1) * Tx(300) * Rz(90) * Rz(A2), (A1, A2), Task("xy")),
-        "Rz(90) of the chain turns by 90 radians, more than a full turn: write 90*DEGREE",
+        "Rz(90) of the chain turns by 90 radians, more than a full turn: write radians(90), which derive.mechanism has",
     ),
     "an angle of the machine in degrees": (
         described(Tx(P1) * Rz(LEAN) * Ty(P2) * Tz(P3), (P1, P2, P3), parameters=(LEAN,)),
