@@ -8,24 +8,21 @@ import numpy as np
 import pytest
 from softkin import Scara2Z
 
-from tests.codesys.guide import GUIDE, PROGRAMS, closed, renamed
-from tests.codesys.parts import FILES
-from tests.harness.library import Library, compile_st
+from tests.codesys.guide import GUIDE, library_of, program_of
+from tests.harness.library import Library
 from tests.text.values import plain
 
 ROBOTICS = (Path(__file__).parent / "robotics.st").read_text(encoding="utf-8")
 SMC_ERROR_OF_THE_GROUP = "SMC_TRAFO_INVALID_CONSTELLATION"
 COUPLED = (Path(__file__).parent / "coupled.st").read_text(encoding="utf-8")
+WITH_TOOL = program_of("FUNCTION_BLOCK ScaraWithTool EXTENDS TRAFO.Kin_Coupled").replace("TRAFO.Kin_", "Kin_")
 
 
 def _asking(*blocks: str, name: str = "PRG_Ask", **texts: str) -> tuple[Library, Any, Any]:
     """The program that asks a group, its library, and the group, which has these blocks and is enabled."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith(f"PROGRAM {name}\n"))
-    wanted = tuple(f"/{name}." for name in blocks)
-    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
     group = "VAR_GLOBAL\n  Machine : AXIS_GROUP_REF_SM3;\nEND_VAR\n"
-    own = {"robotics": ROBOTICS, "Groups": group, name: program, **texts}
-    library = compile_st({**needed, **renamed(own)})
+    own = {"robotics": ROBOTICS, "Groups": group, name: program_of(f"PROGRAM {name}"), **texts}
+    library = library_of(*blocks, **own)
     found = library.constant("Machine")
     found.isEnabled = True
     return library, library.new(name), found
@@ -117,9 +114,7 @@ def _line(robot: Scara2Z) -> list[tuple[float, ...]]:
 
 def test_a_coupled_group_is_asked_by_its_parts() -> None:
     """The query fails in a group whose kinematics is a coupling; the block of the guide gives out its parts."""
-    (coupled,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
-    texts = {"coupled": COUPLED, "ScaraWithTool": coupled.replace("TRAFO.Kin_Coupled", "Kin_Coupled")}
-    library, ask, group = _asking("Softkin_Scara2_Z", "Softkin_CAxis", **texts)
+    library, ask, group = _asking("Softkin_Scara2_Z", "Softkin_CAxis", coupled=COUPLED, ScaraWithTool=WITH_TOOL)
     machine = group.kinematics = library.new("ScaraWithTool")
     machine.dArmLength1, machine.dArmLength2 = 300.0, 250.0
     assert machine.call("Initialize") == "SMC_NO_ERROR"
@@ -131,7 +126,6 @@ def test_a_coupled_group_is_asked_by_its_parts() -> None:
 
 def test_a_coupled_block_initialises_its_parts() -> None:
     """The block of the guide, executed on a stand-in of its base, which wants both parts."""
-    (program,) = (p for p in PROGRAMS if p.startswith("FUNCTION_BLOCK ScaraWithTool"))
     user = """PROGRAM User
 VAR
   machine : ScaraWithTool;
@@ -142,10 +136,7 @@ machine(dArmLength1 := length, dArmLength2 := length);
 status := machine.Initialize();
 END_PROGRAM
 """
-    wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
-    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
-    texts = {"base": COUPLED, "coupled": program.replace("TRAFO.Kin_Coupled", "Kin_Coupled"), "user": user}
-    made = compile_st({**needed, **texts}).new("User")
+    made = library_of("Softkin_Scara2_Z", "Softkin_CAxis", base=COUPLED, coupled=WITH_TOOL, user=user).new("User")
     made()
     assert made.status == "SMC_TRAFO_NOT_INITIALIZED" and made.machine.calls == 0
     made.length = 250.0
@@ -156,10 +147,7 @@ END_PROGRAM
 
 def test_a_block_can_be_called_outside_an_axis_group() -> None:
     """The program of the guide, executed: there and back, with the numbers a SCARA of these lengths gives."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Check"))
-    needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
-    library = compile_st({**needed, "PRG_Check": program})
-    made = library.new("PRG_Check")
+    made = library_of("Softkin_Scara2_Z", PRG_Check=program_of("PROGRAM PRG_Check")).new("PRG_Check")
     for _ in range(2):
         made()
         assert made.status == "SMC_NO_ERROR"
@@ -169,7 +157,7 @@ def test_a_block_can_be_called_outside_an_axis_group() -> None:
 
 def test_the_limits_of_a_drive_are_handed_over() -> None:
     """The lines of the guide behind that program: the way back instead of another turn."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Check"))
+    program = program_of("PROGRAM PRG_Check")
     (declared,) = re.findall(r"`(settings : TRAFO\.Axis_Settings)`", GUIDE)
     lines = re.findall(r"^    (settings\.limits\..*;|status := scara\.AxisSettings.*;)$", GUIDE, re.MULTILINE)
     assert len(lines) == 4
@@ -177,8 +165,7 @@ def test_the_limits_of_a_drive_are_handed_over() -> None:
     text = program.replace("  status :", f"  {declared};\n  xHanded : BOOL;\n  status :", 1)
     text = text.replace("axes.a0 := 30.0;", f"{handed}\naxes.a0 := -160.0;", 1)
     text = text.replace("IF status =", "data.abyData[1] := 0;\naxes.a0 := 160.0;\nIF status =", 1)
-    needed = {name: t for name, t in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
-    made = compile_st({**needed, "PRG_Check": text}).new("PRG_Check")
+    made = library_of("Softkin_Scara2_Z", PRG_Check=text).new("PRG_Check")
     made()
     assert made.status == "SMC_NO_ERROR" and made.back.a0 == pytest.approx(200.0)
     made.xHanded = True

@@ -10,10 +10,9 @@ from derive.command.catalogue import OUTPUT
 from derive.description.mechanism import Role
 from derive.emit.softmotion.inputs import wanted_name
 from derive.emit.st.contract import load
-from tests.codesys.guide import GUIDE, PROGRAMS, closed, renamed
+from tests.codesys.guide import GUIDE, PROGRAMS, closed, library_of, program_of
 from tests.codesys.parts import FILES, all_parts, parts_of
 from tests.harness import ast
-from tests.harness.library import compile_st
 from tests.harness.parse import parse
 from tests.mechanisms import catalogue
 from tests.text.units import FOLDER
@@ -109,10 +108,8 @@ CNC = (Path(__file__).parent / "cnc.st").read_text(encoding="utf-8")
 
 def test_g_code_on_a_position_and_an_orientation_block() -> None:
     """Its program, executed on stand-ins of the wrappers: the point of the axes, and from it these axes again."""
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
-    wanted = ("/Softkin_Scara2_Z.", "/Softkin_CAxis.")
-    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or any(name in n for name in wanted)}
-    made = compile_st({**needed, **renamed({"cnc": CNC, "PRG_Cnc": program})}).new("PRG_Cnc")
+    program = program_of("PROGRAM PRG_Cnc")
+    made = library_of("Softkin_Scara2_Z", "Softkin_CAxis", cnc=CNC, PRG_Cnc=program).new("PRG_Cnc")
     made.actual.a0, made.actual.a1, made.actual.a2, made.actual.a3 = 30.0, 60.0, -10.0, 25.0
     made.setPoint.dX = 400.0
     made()
@@ -143,7 +140,7 @@ def test_g_code_on_a_block_that_stands_alone(unit: str) -> None:
     """The program of the guide without its orientation block, on blocks of other kinds: the point of the axes, and from
     it these axes again.
     """
-    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Cnc"))
+    program = program_of("PROGRAM PRG_Cnc")
     name = unit.split("/")[1]
     (mechanism,) = (m for _, m in catalogue() if m.block_name == name)
     lengths = ", ".join(f"{wanted_name(p)} := {p.nominal:.6f}" for p in mechanism.parameters if p.role is not Role.FLAG)
@@ -156,8 +153,7 @@ def test_g_code_on_a_block_that_stands_alone(unit: str) -> None:
     ):
         assert old in program
         program = program.replace(old, new)
-    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or n == f"{unit}.st"}
-    made = compile_st({**needed, **renamed({"cnc": CNC, "PRG_Cnc": program})}).new("PRG_Cnc")
+    made = library_of(name, cnc=CNC, PRG_Cnc=program).new("PRG_Cnc")
     axes = ALONE[unit]
     fields = [f"a{k}" for k in range(len(axes))]
     for field, value in zip(fields, axes, strict=True):

@@ -19,12 +19,12 @@ from derive.drawing.scene import Body
 from derive.emit.softmotion.library import StructuredTextFiles
 from derive.kinematics.sampling import sample_axes
 from derive.report.reference_calls import Machine
-from tests.codesys.guide import renamed
-from tests.codesys.parts import FILES, SAMPLES, parts_of
+from tests.codesys.guide import library_of as compiled
+from tests.codesys.parts import SAMPLES, parts_of
 from tests.codesys.plcopen_reader import identifiers, listed, parse, wholes
 from tests.codesys.test_axis_group import ROBOTICS, SMC_ERROR_OF_THE_GROUP
 from tests.codesys.test_plcopen import errors
-from tests.harness.library import Library, compile_st
+from tests.harness.library import Library
 from tests.mechanisms import catalogue, kinematics_of
 
 MECHANISMS = {m.block_name: m for _, m in catalogue() if m.block_name in SAMPLES}
@@ -59,11 +59,10 @@ def library_of(name: str, old: str = "", new: str = "") -> Library:
     """The programs of a sample with its block, on stand-ins; in the sample a text is replaced."""
     text = SAMPLES[name]
     assert old in text
-    needed = {n: t for n, t in FILES.items() if n.startswith("softkin/") or n.endswith(f"/{name}.st")}
     declared = ["  Machine : AXIS_GROUP_REF_SM3;", *(f"  {drive} : AXIS_REF_SM3;" for drive in drives_of(name))]
     own = {"robotics": ROBOTICS, "Groups": "\n".join(["VAR_GLOBAL", *declared, "END_VAR", ""])}
     own["sample"] = text.replace(old, new) if old else text
-    return compile_st({**needed, **renamed(own)})
+    return compiled(name, **own)
 
 
 class Picture:

@@ -225,16 +225,15 @@ def test_that_of_a_gripper_is_not_told(tmp_path: Path) -> None:
     assert "ransmission" not in imported_text(tmp_path / "arm.urdf", ARM.replace("</robot>", f"{OTHER}</robot>")).report
 
 
-_HALF = "1.57079632679"
 PANDA = urdf(
     "panda",
     joint("joint_1", "revolute", "0 0 0.333"),
-    joint("joint_2", "revolute", rpy=f"-{_HALF} 0 0"),
-    joint("joint_3", "revolute", "0 -0.316 0", f"{_HALF} 0 0"),
-    joint("joint_4", "revolute", "0.0825 0 0", f"{_HALF} 0 0"),
-    joint("joint_5", "revolute", "-0.0825 0.384 0", f"-{_HALF} 0 0"),
-    joint("joint_6", "revolute", rpy=f"{_HALF} 0 0"),
-    joint("joint_7", "revolute", "0.088 0 0", f"{_HALF} 0 0"),
+    joint("joint_2", "revolute", rpy=f"-{HALF} 0 0"),
+    joint("joint_3", "revolute", "0 -0.316 0", f"{HALF} 0 0"),
+    joint("joint_4", "revolute", "0.0825 0 0", f"{HALF} 0 0"),
+    joint("joint_5", "revolute", "-0.0825 0.384 0", f"-{HALF} 0 0"),
+    joint("joint_6", "revolute", rpy=f"{HALF} 0 0"),
+    joint("joint_7", "revolute", "0.088 0 0", f"{HALF} 0 0"),
     joint("flange", "fixed", "0 0 0.107"),
 )
 """Franka Emika Panda, from the Denavit-Hartenberg parameters that the maker publishes."""

@@ -256,11 +256,6 @@ REFUSED: Mapping[str, tuple[str, str, str]] = {
     "a weld": ("<connect ", "<weld ", "a weld holds the orientation, too"),
     "a passive joint on the base": ('<position joint="m2"/>', "", "joint 'm2' is on the base: a rod hangs on"),
     "a motor too many": ('<position joint="m2"/>', '<motor joint="m2"/><motor joint="p2"/>', "'rod2' has 2 motors"),
-    "another direction": (
-        '<joint name="p2"/>',
-        '<joint name="p2" axis="0 1 0"/>',
-        "2 rods meet in space (not all joints are parallel",
-    ),
     "a passive slide": ('<joint name="p2"/>', '<joint name="p2" type="slide"/>', "joint 'p2' slides without a motor"),
 }
 

@@ -144,24 +144,10 @@ def test_refused(kind: str) -> None:
         build(validate(mechanism))
 
 
-UNSOLVED = {
-    "a coordinate that nothing moves": (
-        described(joints=(P1, P2), closure=(X - P1 - P2, Y - P1 - P2), task=Task("xy")),
-        "the closure does not determine p1, p2: 2 unknowns in 2 equations (x, y) leave 1 free to move",
-    ),
-    "a closure without one coordinate": (
-        described(joints=(P1, P2, P3), closure=(X - P1, Y - P2), task=Task("xyz")),
-        "the closure does not determine z: 3 unknowns in 2 equations (x, y) leave 1 free to move; state one more "
-        "equation",
-    ),
-}
-
-
-@pytest.mark.parametrize("kind", UNSOLVED)
-def test_unsolved(kind: str) -> None:
-    mechanism, message = UNSOLVED[kind]
-    with pytest.raises(Unsolved, match=re.escape(message)):
-        build(mechanism)
+def test_a_closure_without_one_coordinate() -> None:
+    said = "the closure does not determine z: 3 unknowns in 2 equations (x, y) leave 1 free to move; state one more "
+    with pytest.raises(Unsolved, match=re.escape(f"{said}equation")):
+        build(described(joints=(P1, P2, P3), closure=(X - P1, Y - P2), task=Task("xyz")))
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""Directions of angles, of scaled vectors and of cross products: the program before and after."""
+"""Directions of angles, of scaled vectors and of cross products: the program before and after, and what it refuses."""
 
 import numpy as np
 import pytest
@@ -8,20 +8,21 @@ from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
 from derive.ir.primitives import Atan2, NearestPeriod, Root, Select, ToReal, Wrap
-from derive.ir.program import Let, Output, Program
+from derive.ir.program import Let, Output, Program, Require, Status
+from derive.ir.reason import Why, about
 from derive.ir.symbols import Sign, count, real
 from derive.ir.verify import BrokenProgram
 from derive.lowering.passes import STRAIGHT_LINE, lowered
 from derive.lowering.unrolling import unroll
 from derive.optimize.angle_addition import with_added_angles
 from derive.optimize.without_periods import angles_modulo_turns
-from tests.unit.answers import plain_directions, same, values
+from tests.unit.answers import plain_directions, same, shorter, values
 
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (
     real(f"{f}_{q}") for q in ("q1", "q2", "q3", "q12", "q123") for f in ("cos", "sin")
 )
-A, B, E, L, N, R, T, U, V, X, Y, K, COS, SIN, LENGTH, DIVISOR, AXIS = map(
-    real, ("a", "b", "e", "l", "n", "r", "t", "u", "v", "x", "y", "k", "cos_q", "sin_q", "length", "divisor", "axis_q")
+A, B, E, L, N, R, T, U, V, X, Y, K, COS, SIN, LENGTH, DIVISOR, AXIS, ANGLE = map(
+    real, "a b e l n r t u v x y k cos_q sin_q length divisor axis_q angle_q1".split()
 )
 AXIS1, AXIS2, AXIS3 = (real(f"axis_a{i}") for i in (1, 2, 3))
 REGULAR = sp.Gt(R, 1)
@@ -31,7 +32,7 @@ def axis(name: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Let:
     return Let(name, NearestPeriod(Atan2(sine, cosine) / DEGREE + A, N), "its turn")
 
 
-def of(*lets: Let, outputs: tuple[sp.Symbol, ...]) -> Program:
+def of(*lets: Let | Require, outputs: tuple[sp.Symbol, ...]) -> Program:
     return normalise("p", lets, [Output(o.name, o) for o in outputs])
 
 
@@ -261,3 +262,37 @@ def test_a_branch_sign_turns_a_direction() -> None:
     for number, word in ((1, "up"), (-1, "down")):
         wanted, _ = run(program, {**given, "sigma_elbow": np.asarray(number)})
         np.testing.assert_allclose(every[f"axis_q_{word}"], wanted["axis_q"], atol=1e-9)
+
+
+def refusing(amount: sp.Expr) -> Program:
+    require = Require(sp.Gt(R, 0), Status.UNREACHABLE, reason=about("it", Why.TOO_LARGE, amount))
+    turned = NearestPeriod(ANGLE / DEGREE, sp.Integer(0))
+    earlier = Require(sp.Le(turned, 175), Status.UNREACHABLE, reason=about("angle", Why.TOO_LARGE))
+    turn = Let(AXIS1, NearestPeriod(Atan2(S1, C1) / DEGREE, N), turn_of="A1")
+    return of(*DIRECTION, Let(ANGLE, Atan2(S1, C1)), earlier, require, turn, outputs=(AXIS1,))
+
+
+def amounts(program: Program) -> np.ndarray:
+    """The last amount at many numbers, by the statements before the refusal."""
+    require = program.requires()[-1]
+    assert require.reason is not None and require.reason.amount is not None
+    before = [s for s in program.body[: program.body.index(require)] if isinstance(s, Let)]
+    alone = normalise("amount", before, [Output("amount", require.reason.amount)])
+    rng = np.random.default_rng(5)
+    given = {name: rng.uniform(-2.0, 2.0, 200) for name in "lnrtuv"}
+    return np.asarray(run(alone, {s.name: given[s.name] for s in alone.inputs})[0]["amount"])
+
+
+def test_of_a_direction_that_is_taken_without_its_length() -> None:
+    """The division disappears where the angle alone is asked for; an amount asks for more."""
+    for amount in (C1, 2 * S1 + C1, L + S1):
+        program = refusing(amount)
+        for changed in (plain_directions(program), shorter(program)):
+            np.testing.assert_allclose(amounts(changed), amounts(program), rtol=1e-12, atol=1e-12)
+
+
+def test_an_amount_that_reads_nothing_of_it_changes_nothing() -> None:
+    """A direction is not divided where the amount of a reason reads something else."""
+    found = plain_directions(refusing(U + R))
+    assert "direction_x_q1" in {name.name for name in found.bound()}
+    np.testing.assert_allclose(amounts(found), amounts(refusing(U + R)))

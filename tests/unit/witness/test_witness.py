@@ -93,7 +93,7 @@ WRONG: dict[str, tuple[str, Callable[[Kinematics], Kinematics]]] = {
         lambda k: replace(k, branch=without_sigma(k.branch)),
     ),
     "the elbows exchanged": (
-        "branch 'elbow' has the opposite sign",
+        "branch 'elbow' has the opposite sign of its indicator at ",
         lambda k: replace(k, forward=changed(k.forward, "branch_elbow", lambda b: -b)),
     ),
     "a slot that never answers": (
