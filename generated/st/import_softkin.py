@@ -39,6 +39,55 @@ COMPILER = {
 }
 SCRIPT_MESSAGES = "194B48A9-AB51-43AE-B9A9-51D3EDAADDF3"
 
+# What to do with an error: (the object it is about, names in its text, what to do); the first that fits, and the last
+# always does. Messages are translated, names are not.
+ADVICE = [
+    (
+        "Softkin_Names",
+        [],
+        "Open `Softkin_Names` in CODESYS, and let Input Assistant (F2) choose what your library has behind `:=`; every block follows.",
+    ),
+    (
+        "",
+        """
+        ActivateAutomaticRotaryPeriods AxesToCartesian AxesToConfiguration_Offset AxesToOrientation
+        AxisAccelerations AxisAccelerationsFrom AxisSettings AxisVelocities AxisVelocitiesFrom CPConnectible
+        CartesianToAxes CartesianToAxes_Offset Diagnose GetAxisProperties GetConfigurationDataSize
+        GetDefaultConfigurationData GetFlangeOrientationImageTotal GetFlangeOrientationImageWithOri
+        GetKinematicsName GetOrientationImage GetOrientationImageTotal GetOrientationImageWithOri GetPeriods
+        GetPositionFromOrientation GetPositionFromOrientation2 GetPositionFromOrientation3 Initialize
+        InitializeReason IsCompatibleWithPosKin IsConfigSingular IsInitialized IsSingularity Jacobian
+        JacobianFrom Margins MarginsFrom
+        """.split(),
+        "Look for an empty method of that name below the block, and delete it; where there is none, import `<family>/<block>.xml`, whose block is flat.",
+    ),
+    (
+        "ISoftkin",
+        """
+        ISoftkin IQueryInterface
+        """.split(),
+        "In `ISoftkin` alone delete what stands behind its name; everything else compiles and works.",
+    ),
+    (
+        "",
+        """
+        ISMKinPeriodHandling ISMKinematicAxisSettings ISMKinematicWithConfigurations
+        ISMKinematicWithConfigurations2 ISMKinematicWithConfigurations3 ISMKinematicWithConfigurations4
+        ISMKinematicWithInfo ISMKinematicWithInfo2 ISMKinematicWithInitialization
+        ISMKinematicsWithOrientationImage2 ISMOrientationKinematics ISMOrientationKinematics2
+        ISMOrientationKinematics3 ISMOrientationKinematicsWithOriImage2 ISMPositionKinematics
+        ISMPositionKinematics2 ISMPositionKinematics_Offset ISMPositionKinematics_Offset2 ISMToolKinematics2
+        MC_KIN_REF_SM3
+        """.split(),
+        "`make generate PROFILE=before_4_11` leaves the newest interface of each kind out: import again.",
+    ),
+    (
+        "",
+        [],
+        "Replace it by the name that your library has, by *Find and replace* in the project, or by a line of `templates/st/softmotion.toml`, `make generate`, and another import.",
+    ),
+]
+
 RULER = re.compile(r"(?:(?:GET|END_\w+)  )?// ====(?: (\w+) ([\w.]+): (declaration|implementation) )?=*$")
 RETURNS = re.compile(r"^(?:FUNCTION|METHOD|PROPERTY)\b[^:\n]*:[ ]*([^\n]+)$", re.MULTILINE)
 
@@ -208,19 +257,33 @@ def check(project):
     project.check_all_pool_objects()
     errors = 0
     for category, message in messages():
-        errors += message.severity in (Severity.Error, Severity.FatalError)
         print("%s: %s: %s" % (category, message.severity, text_of(message)))
+        if message.severity in (Severity.Error, Severity.FatalError):
+            errors += 1
+            print("    " + advice_on(message))
     return errors
 
 
 def text_of(message):
     """The text of a message, with its number and the object it is about, where it has them."""
     number = "%s%s " % (getattr(message, "prefix", None) or "", getattr(message, "number", None) or "")
+    place = object_of(message)
+    return number.lstrip() + message.text + (" (%s)" % place if place else "")
+
+
+def object_of(message):
+    """The name of the object that a message is about; empty if it is about none."""
     try:
-        place = " (%s)" % message.object.get_name()
+        return message.object.get_name()
     except Exception:
-        place = ""  # a message about no object
-    return number.lstrip() + message.text + place
+        return ""
+
+
+def advice_on(message):
+    """What to do with an error."""
+    words, place = set(re.findall(r"\w+", message.text)), object_of(message)
+    fits = (do for about, names, do in ADVICE[:-1] if (about and about == place) or words.intersection(names))
+    return next(fits, ADVICE[-1][-1])
 
 
 def source_folder():
@@ -262,7 +325,7 @@ def main():
     project.save()
     print("%d objects and %d pictures in %s; errors of the compiler: %d" % (count, pictures, path, errors))
     if errors:
-        print("docs/CODESYS.md, section 10, says what to do with each message")
+        print("docs/CODESYS.md#10-when-it-does-not-compile-or-refuses says more of each message")
     return errors
 
 

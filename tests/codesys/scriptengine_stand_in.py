@@ -206,6 +206,7 @@ class Project(Container):
             compile_st({one.get_name(): composed(one) for one in nodes})
         except StError as problem:
             yield Message(Severity.Error, str(problem))
+        yield from self._engine.further
         yield Message(Severity.Information, "Compile complete", self)
 
     def get_name(self) -> str:
@@ -242,6 +243,8 @@ class Engine(types.ModuleType):
         super().__init__("scriptengine")
         self.categories: dict[str, list[Message]] = {SCRIPT: [Message(Severity.Text, "printed by a script")]}
         self.made: list[Project] = []
+        self.further: list[Message] = []
+        """What the compiler says besides."""
         self.projects = types.SimpleNamespace(primary=None, create=self._create)
         self.library_manager = types.SimpleNamespace(get_all_libraries=lambda: _libraries(titles))
         dialog = types.SimpleNamespace(save_file_dialog=lambda **_: answer)

@@ -14,8 +14,20 @@ from pathlib import Path
 import pytest
 
 from derive.command.catalogue import OUTPUT
+from derive.emit.st.contract import load
 from tests.codesys.parts import FILES, all_parts
-from tests.codesys.scriptengine_stand_in import Code, Dut, Engine, Folder, LibraryManager, Node, Project, Property
+from tests.codesys.scriptengine_stand_in import (
+    Code,
+    Dut,
+    Engine,
+    Folder,
+    LibraryManager,
+    Message,
+    Node,
+    Project,
+    Property,
+    Severity,
+)
 
 # The nodes of Python 2.7's grammar by the names they have today.
 _NODES = set(
@@ -180,6 +192,43 @@ def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFix
     assert "Severity.Error" in printed and "initialised" in printed
     assert "errors of the compiler: 1" in printed
     assert engine.made[0].is_saved, "to be looked at"
+
+
+def _advice(engine: Engine, tmp_path: Path, error: Message, capsys: pytest.CaptureFixture[str]) -> str:
+    """What the script prints below an error of the compiler."""
+    engine.further = [error]
+    assert execute(engine, str(tmp_path / "a.library"), script=_copy(tmp_path)) == 1
+    lines = capsys.readouterr().out.splitlines()
+    return lines[1 + next(i for i, line in enumerate(lines) if error.text in line)].strip()
+
+
+@pytest.mark.parametrize(
+    ("case", "text", "place"),
+    [
+        ("constant", "'SMC_TRAFO_NOT_INITIALIZED' ist nicht definiert", "Softkin_Names"),
+        ("method", "no 'CartesianToAxes' of interface 'MC_KIN_REF_SM3'", "Softkin_Scara2_Z"),
+        ("own", "unknown type '__SYSTEM.IQueryInterface'", "ISoftkin"),
+        ("own", "no such interface", "ISoftkin"),
+        ("interface", "unknown type 'ISMKinematicWithConfigurations4'", "Softkin_Kinematics"),
+        ("other", "unknown type 'UDINT'", "AxesToCartesian"),
+    ],
+)
+def test_it_says_what_to_do(
+    case: str, text: str, place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    error = Message(Severity.Error, text, Dut(place, "TYPE"))
+    assert _advice(Engine(TITLES), tmp_path, error, capsys) == load().spelling["messages"][case]["do"]
+
+
+def test_the_guide_says_the_same() -> None:
+    """Every paragraph of section 10 on the compiler has the title and the first words that the script has."""
+    guide = (OUTPUT.parent / "docs" / "CODESYS.md").read_text(encoding="utf-8")
+    _, section = guide.split("\n## 10. When it does not compile, or refuses\n")
+    compiling = section.split("\n**Initialize refuses.**")[0]
+    found = [" ".join(one.split()) for one in compiling.split("\n\n") if one.startswith("**")]
+    expected = [f"**{one['case']}** {one['do']} " for one in load().spelling["messages"].values()]
+    assert len(found) == len(expected)
+    assert all(paragraph.startswith(begin) for paragraph, begin in zip(found, expected, strict=True))
 
 
 def test_a_dialog_asks_for_the_path(tmp_path: Path) -> None:

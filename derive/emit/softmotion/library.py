@@ -105,6 +105,11 @@ class StructuredTextFiles:
                 flat=contract.is_flat,
                 sampled=bool(samples),
                 teaches=f"{_SHARED}/Softkin_Teach" in objects,
+                words={
+                    "methods": sorted({*contract.own}.union(*(one.methods for one in contract.interfaces.values()))),
+                    "own": [contract.spelling["own_interface"]["name"], "IQueryInterface"],
+                    "interfaces": sorted(contract.interfaces),
+                },
             )
         return dict(sorted(files.items()))
 
