@@ -263,7 +263,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   int next_attempt, passes_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
       from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 1153; pass += 1) {
+  for (int pass = 0; pass < 308; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -354,8 +354,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = attempt + (another ? 1 : 0);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
     from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose ? 0.01
-        : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 62) ? 1e-5 : 0.01) : 2e-12);
+    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
     product_in_damping = 0.001*error;
     damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
@@ -455,9 +454,8 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
-    free_turn = next_attempt > 115 ? 360.0*(next_attempt - 115)/13.0
-        : (next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0);
+    free_turn = next_attempt > 62 ? nearest_turn_now
+        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -524,7 +522,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
     least_error_left_now = is_nearer ? error_left : least_error_left;
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 128))) {
+    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -543,7 +541,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
     passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 129 : next_attempt);
+    attempt = (no_start_is_left ? 116 : next_attempt);
     error_before = (another || mirrors ? 9.0 : error);
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;

@@ -185,11 +185,11 @@ softkin_regular_all wrist3_regular_all;
 
 const softkin_native softkin_machines[] = {
     {"ac6_rzryryrxryrz_j6offset 546408358f25b4d5", &ac6_rzryryrxryrz_j6offset_mechanism, {NULL, NULL}},
-    {"ac6_threeparallel 77480468de1adad8", &ac6_threeparallel_mechanism,
+    {"ac6_threeparallel 8a07a3647a013fa0", &ac6_threeparallel_mechanism,
         {ac6_threeparallel_regular, ac6_threeparallel_regular_all}},
     {"ac6_txtytzryrxrz 5a4e37cb31d75fcd", &ac6_txtytzryrxrz_mechanism,
         {ac6_txtytzryrxrz_regular, ac6_txtytzryrxrz_regular_all}},
-    {"articulatedrobot_6dof f2ad6cbd7bd045e7", &articulatedrobot_6dof_mechanism,
+    {"articulatedrobot_6dof 5158e70dc4880123", &articulatedrobot_6dof_mechanism,
         {articulatedrobot_6dof_regular, articulatedrobot_6dof_regular_all}},
     {"bipod_c e6485194ac775402", &bipod_c_mechanism, {bipod_c_regular, bipod_c_regular_all}},
     {"bipod_rotary 2fee8fd2d0b50352", &bipod_rotary_mechanism,
@@ -241,7 +241,7 @@ const softkin_native softkin_machines[] = {
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
-    {"pos_rrr adc9be93692c11bd", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
+    {"pos_rrr 3a83fecab7ffdb11", &pos_rrr_mechanism, {pos_rrr_regular, pos_rrr_regular_all}},
     {"rodpalletizer 11103369accd5739", &rodpalletizer_mechanism, {NULL, NULL}},
     {"rodwrist 4efd0a5cae0097c6", &rodwrist_mechanism, {NULL, NULL}},
     {"scara2_z dd7e1ee91aeedce3", &scara2_z_mechanism, {scara2_z_regular, scara2_z_regular_all}},

@@ -416,7 +416,7 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_s2, start_s3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(1153):
+        for _ in range(308):
             motor_s2 = tried_s2 - offset_s2
             level_of_b = motor_s2 * motor_s2 - sum_in_level_of_b
             motor_s3 = tried_s3 - offset_s3
@@ -486,9 +486,7 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = (
-                0.01
-                if from_the_met_pose
-                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 62) else 0.01) if next_attempt > 0 else 2e-12)
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
             )
             product_in_damping = 0.001 * error
             damping = max(1e-13, product_in_damping)
@@ -536,13 +534,9 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                360.0 * (next_attempt - 115) / 13.0
-                if next_attempt > 115
-                else (
-                    nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                    if next_attempt > 62
-                    else -360.0 * (1 - next_attempt) / 61.0
-                )
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a4 = (
                 (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
@@ -643,7 +637,7 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             machine_scale_times_shrinking = machine_scale * shrinking
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 128)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -666,7 +660,7 @@ class CylinderPalletizer(OffsetKinematics, TwistChoice):
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 129 if no_start_is_left else next_attempt
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now

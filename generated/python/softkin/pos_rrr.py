@@ -26,9 +26,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 54 additions, 45 multiplications, 8 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 191 additions, 140 multiplications, 24 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 107268 additions, 154536 multiplications, 12686 divisions, 3463
-    square roots, 16147 sines
-    steps of damped least squares on the closure, from one start after the other: at most 1153 passes, all of
+    a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
+    square roots, 4317 sines
+    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -101,7 +101,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr adc9be93692c11bd"
+    KEY = "pos_rrr 3a83fecab7ffdb11"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -313,7 +313,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(1153):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -357,9 +357,7 @@ class PosRRR(OffsetKinematics):
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = (
-                0.01
-                if from_the_met_pose
-                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 62) else 0.01) if next_attempt > 0 else 2e-12)
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
             )
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
@@ -409,13 +407,9 @@ class PosRRR(OffsetKinematics):
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                360.0 * (next_attempt - 115) / 13.0
-                if next_attempt > 115
-                else (
-                    nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                    if next_attempt > 62
-                    else -360.0 * (1 - next_attempt) / 61.0
-                )
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -457,7 +451,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 128)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -483,7 +477,7 @@ class PosRRR(OffsetKinematics):
                 )
             )
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 129 if no_start_is_left else next_attempt
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
@@ -613,7 +607,7 @@ class PosRRR(OffsetKinematics):
             turn_of_attempt,
             turn_beside,
         ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(1153):
+        for _ in range(308):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -660,9 +654,7 @@ class PosRRR(OffsetKinematics):
             mirrors = pose_is_close and (beside_arm or beside_elbow)
             from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
             free_angle = (
-                0.01
-                if from_the_met_pose
-                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 62) else 0.01) if next_attempt > 0 else 2e-12)
+                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
             )
             free_angle_times_machine_scale = free_angle * machine_scale
             no_start_is_left = (
@@ -712,13 +704,9 @@ class PosRRR(OffsetKinematics):
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                360.0 * (next_attempt - 115) / 13.0
-                if next_attempt > 115
-                else (
-                    nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                    if next_attempt > 62
-                    else -360.0 * (1 - next_attempt) / 61.0
-                )
+                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
+                if next_attempt > 62
+                else -360.0 * (1 - next_attempt) / 61.0
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -760,7 +748,7 @@ class PosRRR(OffsetKinematics):
             passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
             least_error_left_now = error_left if is_nearer else least_error_left
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 128)):
+            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -786,7 +774,7 @@ class PosRRR(OffsetKinematics):
                 )
             )
             passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 129 if no_start_is_left else next_attempt
+            attempt = 116 if no_start_is_left else next_attempt
             error_before = 9.0 if another or mirrors else error
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now

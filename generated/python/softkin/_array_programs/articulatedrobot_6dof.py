@@ -164,7 +164,7 @@ class ArrayPrograms(Programs):
         ) = initial(
             start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(1153):
+        for _ in range(308):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -292,9 +292,7 @@ class ArrayPrograms(Programs):
             mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(
-                from_the_met_pose,
-                0.01,
-                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 62), 1e-5, 0.01), 2e-12),
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
             )
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
@@ -481,13 +479,9 @@ class ArrayPrograms(Programs):
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 115,
-                360.0 * (next_attempt - 115) / 13.0,
-                select(
-                    next_attempt > 62,
-                    nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                    -360.0 * (1 - next_attempt) / 61.0,
-                ),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -580,7 +574,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 128))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -658,7 +652,7 @@ class ArrayPrograms(Programs):
                         select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
                     ),
                     select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 129, next_attempt),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,

@@ -95,7 +95,7 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(start_a1, start_s2, start_s3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(1153):
+        for _ in range(308):
             motor_s2 = tried_s2 - k.offset_s2
             level_of_b = motor_s2 * motor_s2 - k.sum_in_level_of_b
             motor_s3 = tried_s3 - k.offset_s3
@@ -165,9 +165,7 @@ class ArrayPrograms(Programs):
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
             from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
             free_angle = select(
-                from_the_met_pose,
-                0.01,
-                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 62), 1e-5, 0.01), 2e-12),
+                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
             )
             product_in_damping = 0.001 * error
             damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
@@ -215,13 +213,9 @@ class ArrayPrograms(Programs):
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 115,
-                360.0 * (next_attempt - 115) / 13.0,
-                select(
-                    next_attempt > 62,
-                    nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                    -360.0 * (1 - next_attempt) / 61.0,
-                ),
+                next_attempt > 62,
+                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
+                -360.0 * (1 - next_attempt) / 61.0,
             )
             closed_reference_a4 = (
                 select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
@@ -316,7 +310,7 @@ class ArrayPrograms(Programs):
             passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
             least_error_left_now = select(is_nearer, error_left, least_error_left)
             machine_scale_times_shrinking = k.machine_scale * shrinking
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 128))
+            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
             if settled(done, status):
                 break
             (
@@ -368,7 +362,7 @@ class ArrayPrograms(Programs):
                     ),
                     select(another | from_the_met_pose, given_ref_a4, tried_a4),
                     select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 129, next_attempt),
+                    select(no_start_is_left, 116, next_attempt),
                     select(another | mirrors, 9.0, error),
                     least_error_left_now,
                     nearest_turn_now,
