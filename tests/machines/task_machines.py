@@ -137,11 +137,6 @@ WITH_ABSOLUTE_JOINTS = {
         _bent(A2 - A1),
         offset_interface=True,
     ),
-    "palletizer that tilts its tool": _machine(
-        "TiltingPalletizer",
-        _COLUMN * Ry(A2) * Tz(L1) * Ry(A3 - A2) * Tx(L2) * Ry(-A3) * Tx(BESIDE) * Tz(-L4) * Rz(A4) * Ry(A5),
-        DIRECTION,
-    ),
     "arm with its elbow motor on the base, and gears": _machine(
         "GearedBelts",
         Tz(HEIGHT) * Rz(A1 / 2) * Ry(A2 / 3) * Tz(L2) * Ry(A3 / 4 - A2 / 3) * Tx(L3),
@@ -154,7 +149,14 @@ WITH_ABSOLUTE_JOINTS = {
 }
 
 DRIVEN: Mapping[str, Mechanism] = {**WITH_GEARS, **WITH_SHARED_MOTORS, **WITH_ABSOLUTE_JOINTS}
-TASK_MACHINES: Mapping[str, Mechanism] = {**WITH_PITCH, **WITH_PITCH_AND_ROLL, **DRIVEN}
+WITH_FIVE_AXES = {
+    "palletizer that tilts its tool": _machine(
+        "TiltingPalletizer",
+        _COLUMN * Ry(A2) * Tz(L1) * Ry(A3 - A2) * Tx(L2) * Ry(-A3) * Tx(BESIDE) * Tz(-L4) * Rz(A4) * Ry(A5),
+        DIRECTION,
+    ),
+}
+TASK_MACHINES: Mapping[str, Mechanism] = {**WITH_PITCH, **WITH_PITCH_AND_ROLL, **DRIVEN, **WITH_FIVE_AXES}
 UNNAMED = {
     10: ("six axes by a table with angles as numbers",),
     8: (

@@ -135,15 +135,18 @@ def in_python(name: str) -> Answers:
 
 
 def in_arrays(name: str) -> Answers:
-    machine = made_of("", "given, status", array_body, vars(_array))
+    own = ("machine = None", "run_where = Programs.run_where")
+    machine = made_of("", "given, status", array_body, vars(_array), own)
     status = np.zeros(len(ROWS), np.uint8)
     with np.errstate(all="ignore"):
         columns = getattr(machine, name)(tuple(np.array(ROWS).T), status)
     return [(softkin.Status(s).name, [float(c[k]) for c in columns]) for k, s in enumerate(status)]
 
 
-def made_of(prefix: str, given: str, body: Callable[[Method], list[str]], names: Mapping[str, Any]) -> Any:
-    lines = ["class Nested:", *indented(["constants = _constants = known"])]
+def made_of(
+    prefix: str, given: str, body: Callable[[Method], list[str]], names: Mapping[str, Any], own: Sequence[str] = ()
+) -> Any:
+    lines = ["class Nested:", *indented(["constants = _constants = known", *own])]
     for name, program in PROGRAMS.items():
         result = tuple(o.name for o in program.outputs)
         method = Method(name, "", program, (Argument("given", "Values", arguments(program)),), "Values", result, True)
