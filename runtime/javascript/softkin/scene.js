@@ -100,7 +100,8 @@ function chainOf({ factors, loops = [], belt }, values, limits) {
       const own = { position: lines[0][0], rotation: frameAlong(unit(minus(lines[0][1], lines[0][0]))) };
       bodies.push({ name: `${word} beside the ${loop.name}`, kind: "link", joints: loop.joints, frame: own, lines });
       if (word === "crank" && loop.isFirst && !loop.cylinder && factors[loop.at].motion !== "shift") {
-        motors.push({ joints: loop.joints, at: pins[0], axis: columnOf(axes, factors[loop.at].axis), body: bodies.length - 1 });
+        const axis = columnOf(axes, factors[loop.at].axis);
+        motors.push({ joints: loop.joints, at: pins[0], axis, body: bodies.length - 1 });
       }
     }
   }
@@ -111,7 +112,8 @@ function chainOf({ factors, loops = [], belt }, values, limits) {
 function beltAt(belt, factors, frames, values, limits) {
   const slides = belt.slides.map((k) => factors[k]);
   const [at, rows] = frames[belt.slides[0]];
-  const ends = limits.filter(({ name }) => slides[0].joints.includes(name)).flatMap(({ lower, upper }) => [lower, upper]);
+  const own = limits.filter(({ name }) => slides[0].joints.includes(name));
+  const ends = own.flatMap(({ lower, upper }) => [lower, upper]);
   const most = ends.includes(null) ? Infinity : Math.max(...ends.map(Math.abs));
   const place = slides.map(({ amount }) => values[amount][0]);
   return beltOf(belt, at, slides.map(({ axis }) => columnOf(rows, axis)), place, most);
