@@ -1,6 +1,6 @@
 """A controller that calls a block: plain values in, a status and plain values out."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any
@@ -217,20 +217,6 @@ def asked(call: Callable[..., Any], *arguments: Any) -> Answer:
         return OK, call(*arguments)
     except KinematicsError as refusal:
         return refusal.status.softmotion, None
-
-
-def asked_axes(call: Callable[..., Any], *arguments: Any) -> Answer:
-    """The answer of an inverse in Python as a block writes it: with zeros behind its axis values."""
-    status, axes = asked(call, *arguments)
-    return status, None if axes is None else axes + (0.0,) * (6 - len(axes))
-
-
-def compare_inverse(one: Any, frame: Any, configuration: Sequence[int], reference: Sequence[float]) -> str:
-    """A machine (as a block, and in Python) answers a frame the same in both; the status."""
-    expected = asked_axes(one.robot.inverse, frame, configuration, reference)
-    found = one.controller.inverse(*frame, configuration, reference)
-    assert_same(found, expected, one, frame, configuration, reference)
-    return expected[0]
 
 
 def is_close(found: Any, expected: Any) -> bool:

@@ -1,20 +1,67 @@
 """Blocks alone: every method, also inherited, and what was worked out by hand."""
 
+import math
+
 import numpy as np
 import pytest
 
 from bench.blocks import FOLDER, KINDS, Kind, measured
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import Mechanism, Turning
 from derive.emit.softmotion.base import INHERITED
 from tests.catalogue.coupling.parts import ORIENTATIONS
+from tests.catalogue.references import held_at
 from tests.harness.library import Library
 from tests.text.any_method import call_of, methods_of
 from tests.text.comparisons import POSELESS
-from tests.text.controller import IMPOSSIBLE, OK, Controller
+from tests.text.controller import IMPOSSIBLE, OK, UNREACHABLE, Controller
+from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
 from tests.text.loops.machines import LOOPS, Loop
 from tests.text.pairs import POSITION_KINEMATICS, Pair, comparisons_of, pairs_of
 from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
 from tests.text.units import compiled, compiled_text, file_of, public_methods, text_of
+
+ROUND_TRIP = 1e-9
+"""Away from singular poses: relative to a turn, or to the size of the machine."""
+
+
+def unlimited(serial_pairs: tuple[SerialPair, ...]) -> list[SerialPair]:
+    """The machines on which every pose is allowed."""
+    return [t for t in serial_pairs if not has_limits(t.machine)]
+
+
+def is_limited(one: SerialPair) -> bool:
+    """Whether limits are given that some samples are beyond, checked or not."""
+    if one.machine.label == EXACTLY_A_TURN:
+        return any(joint.is_angle for joint in one.mechanism.joints)
+    return one.machine.label.startswith("limit")
+
+
+def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """With the bytes that forward kinematics writes, wherever the reference is where every byte can hold its turn."""
+    for one in unlimited(serial_pairs):
+        for sample in one.regular:
+            status, pose = one.controller.forward(sample.axes)
+            assert status == OK
+            position, rotation, data = pose
+            near = held_at(one.robot, sample.axes, sample.reference)
+            status, axes = one.controller.inverse(position, rotation, data, near.tolist())
+            assert status == OK, f"{one} {sample}"
+            count = len(sample.axes)
+            worst = max(abs(a - b) for a, b in zip(axes, sample.axes, strict=False))
+            assert worst <= ROUND_TRIP * (one.machine.reach + 360.0), f"{one} {sample} {axes}"
+            assert axes[count:] == (0.0,) * (6 - count)
+
+
+def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """Where every byte says what was chosen, and so no other solution is possible."""
+    for one in serial_pairs:
+        inside = is_inside(one.machine, np.array([sample.axes for sample in one.regular]))
+        for sample, is_allowed in zip(one.regular, inside, strict=True):
+            _, (position, rotation, data) = one.controller.forward(sample.axes)
+            near = held_at(one.robot, sample.axes, sample.reference)
+            status, _ = one.controller.inverse(position, rotation, data, near.tolist())
+            assert status == (OK if is_allowed or not one.robot.checks_limits else UNREACHABLE), f"{one} {sample}"
+        assert set(inside) == ({True, False} if is_limited(one) else {True})
 
 
 def test_the_number_of_axes(serial_pairs: tuple[SerialPair, ...]) -> None:
@@ -28,6 +75,70 @@ def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, .
     before = [getattr(one.controller.block, name) for name in fields]
     one.controller.block()
     assert [getattr(one.controller.block, name) for name in fields] == before
+
+
+def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """A flange with one degree of freedom turns about its axis; one with none does not turn."""
+    for one in serial_pairs:
+        whole = "GetOrientationImage".lower() not in one.controller.methods
+        method = "GetFlangeOrientationImageTotal" if whole else "GetOrientationImage"
+        _, (freedom, zero, base, flange) = one.controller.image(method)
+        assert freedom == one.robot.FREEDOM
+        for sample in one.regular:
+            rotation = one.controller.forward(sample.axes)[1][1]
+            assert whole or one.controller.orientation(sample.axes) == (OK, rotation)
+            if freedom == "three":
+                continue  # anything
+            turned = [sum(r * u for r, u in zip(row, flange, strict=True)) for row in rotation]
+            assert turned == pytest.approx(base, abs=1e-12)
+            if freedom == "zero":
+                assert rotation == zero
+
+
+def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """For tilted commands: GetFlangeOrientationImageWithOri, and forward kinematics of inverse kinematics."""
+    for one in unlimited(serial_pairs):
+        if "getflangeorientationimagewithori" not in one.controller.methods:
+            continue
+        for sample in one.regular:
+            position = one.controller.forward(sample.axes)[1][0]
+            default = one.robot.DEFAULT_CONFIGURATION
+            status, axes = one.controller.inverse(position, sample.rotation, default, sample.axes)
+            image_status, image = one.controller.image_with_orientation(sample.rotation)
+            assert image_status == OK
+            if status != OK:  # the last link swings with the commanded orientation
+                assert status == UNREACHABLE
+                continue
+            reached = one.controller.forward(axes)[1][1]
+            followed = slice(2, 3) if one.mechanism.task.turning is Turning.DIRECTION else slice(3)
+            for row, wanted in zip(reached, image[1], strict=True):
+                assert row[followed] == pytest.approx(wanted[followed], abs=1e-12)
+
+
+@pytest.mark.long
+def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPair, ...]) -> None:
+    """Round trip of the offset interface, with the configuration that it gives itself."""
+    for one in unlimited(serial_pairs):
+        if "cartesiantoaxes_offset" not in one.controller.methods:
+            continue
+        for sample in one.regular:
+            for offset in ((0.0, 0.0, 0.0), sample.offset):
+                point = place(one, sample.axes, offset)
+                data = (0,) * 32
+                if one.robot.CONFIGURATION:
+                    data = one.controller.configuration_offset(sample.axes, offset)
+                status, axes = one.controller.inverse_offset(point, offset, data, sample.axes)
+                assert status == OK, f"{one} {sample}"
+                found = place(one, axes[: len(sample.axes)], offset)
+                size = one.machine.reach + math.hypot(*point)
+                assert found == pytest.approx(point, abs=1e-9 * size), f"{one} {sample} {offset}"
+
+
+def place(one: SerialPair, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
+    """Where a point of the flange is at axis values, by the block's own forward kinematics."""
+    position, rotation, _ = one.controller.forward(axes)[1]
+    turned = [sum(r * o for r, o in zip(row, offset, strict=True)) for row in rotation]
+    return [p + t for p, t in zip(position, turned, strict=True)]
 
 
 def geared(mechanism: Mechanism) -> Library:

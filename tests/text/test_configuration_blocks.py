@@ -8,7 +8,7 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.text import values
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import BAD_INPUT, asked_axes, assert_same
+from tests.text.controller import BAD_INPUT, asked, assert_same
 from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
 
 CONFIGURABLE = [m for m in POSITION_KINEMATICS if m.branches or m.period_joints]
@@ -102,9 +102,9 @@ def test_what_is_set_drives_inverse_kinematics(one: Pair) -> None:
         chosen = branches + (turn,) * len(one.robot.PERIOD_AXES)
         (position, rotation), _ = one.robot.forward(sample.axes)
         data = configured(one, inputs(one.mechanism, branches, chosen[len(branches) :]))
-        expected = asked_axes(one.robot.inverse, (position, rotation), chosen, sample.reference)
+        status, axes = asked(one.robot.inverse, (position, rotation), chosen, sample.reference)
         answer = one.controller.inverse(position, rotation, data, sample.reference)
-        assert_same(answer, expected, one, chosen, sample)
+        assert_same(answer, (status, axes and axes + (0.0,) * (6 - len(axes))), one, chosen, sample)
         found.add(answer)
     assert len(found) > 3
 

@@ -18,16 +18,7 @@ from tests.text import values
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.configurations import padded
-from tests.text.controller import (
-    BAD_INPUT,
-    IMPOSSIBLE,
-    NOT_INITIALIZED,
-    OK,
-    Controller,
-    asked,
-    assert_same,
-    compare_inverse,
-)
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, Controller, asked, assert_same
 from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
@@ -152,7 +143,10 @@ def test_garbage_in_a_command_as_in_python(pairs: tuple[Pair, ...]) -> None:
         numbers = (*clean[:index], garbage, *clean[index + 1 :])
         for data in (own, (0,) * len(own)):
             command = numbers[:3], rotation, data, numbers[3:]
-            status = compare_inverse(one, command[:2], *command[2:])
+            status, axes = asked(one.robot.inverse, command[:2], *command[2:])
+            assert_same(
+                one.controller.inverse(*command), (status, axes and axes + (0.0,) * (6 - len(axes))), one, command
+            )
             if index < 3 and "xyz"[index] in one.mechanism.task.position:
                 assert status == BAD_INPUT, f"{one} {command}"
 
@@ -165,8 +159,10 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
             (position, rotation), own = one.robot.forward(sample.axes)
             scaled = tuple(tuple(2.0 * v for v in row) for row in rotation)
             for wrong in (*NO_ROTATIONS, scaled):
-                status = compare_inverse(one, (position, wrong), own, sample.axes)
-                assert status == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {wrong}"
+                found = one.controller.inverse(position, wrong, own, sample.axes)
+                assert found[0] == (BAD_INPUT if one.robot.READS_ROTATION else OK), f"{one} {wrong}"
+                status, axes = asked(one.robot.inverse, (position, wrong), own, sample.axes)
+                assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, wrong)
                 if "getflangeorientationimagewithori" in one.controller.methods:
                     assert one.controller.image_with_orientation(wrong)[0] == BAD_INPUT
 
@@ -202,7 +198,9 @@ def test_the_largest_numbers(pairs: tuple[Pair, ...]) -> None:
                 assert_same(found[1][:2], tuple(answer[0]), one, axes)
                 assert found[1][2] == padded(answer[1])
             for data in (one.robot.DEFAULT_CONFIGURATION, (0,) * len(one.robot.CONFIGURATION)):
-                compare_inverse(one, (position, NO_TURN), data, reference)
+                status, answer = asked(one.robot.inverse, (position, NO_TURN), data, reference)
+                found = one.controller.inverse(position, NO_TURN, data, reference)
+                assert_same(found, (status, answer and answer + (0.0,) * (6 - count)), one, position, data, reference)
 
 
 MACHINES = 8
@@ -241,8 +239,11 @@ def test_a_frame_from_real_is_answered_as_in_python(pairs: tuple[Pair, ...]) -> 
         for sample in [s for s in one.regular if _is_inside(one.robot, s.axes)][:3]:
             (position, rotation), own = one.robot.forward(sample.axes)
             for matrix in slightly_off(np.array(rotation)):
-                status = compare_inverse(one, (position, rows(matrix)), own, sample.axes)
-                assert status == asked(one.robot.inverse, (position, rotation), own, sample.axes)[0]
+                frame = position, rows(matrix)
+                status, axes = asked(one.robot.inverse, frame, own, sample.axes)
+                found = one.controller.inverse(*frame, own, sample.axes)
+                assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, matrix)
+                assert found[0] == asked(one.robot.inverse, (position, rotation), own, sample.axes)[0]
 
 
 def _is_inside(robot: softkin.Mechanism, axes: tuple[float, ...]) -> bool:

@@ -23,7 +23,6 @@ from tests.harness.library import Library, compile_st
 from tests.harness.names import C_MACROS, KEYWORDS, check_name
 from tests.text import values
 from tests.text.contract.blocks import FILES, UNITS
-from tests.text.samples import NO_TURN
 
 SCARA = MECHANISMS / "kin_scara2_z.py"
 REMEDY = "choose another name for the mechanism, parameter, joint or branch that it is made of"
@@ -207,7 +206,7 @@ def ready(name: str, value: str, unit: str, **inputs: float) -> tuple[Library, A
 
 def inverse(found: Library, block: Any, x: float, y: float = 0.0) -> str:
     """What CartesianToAxes answers for a frame at a place."""
-    frame = values.frame(found, (x, y, 0.0), NO_TURN)
+    frame = values.frame(found, (x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     axes, data = found.new(values.AXES_TYPE), values.configuration(found, (1,))
     answer: str = block.call("CartesianToAxes", a=axes, f=frame, aRef=found.new(values.AXES_TYPE), cd=data)
     return answer
@@ -257,14 +256,15 @@ def test_a_freedom_is_the_one_of_the_list() -> None:
 def test_a_frame_is_the_one_of_the_list(name: str, value: str, unit: str, wanted: tuple[str, bool]) -> None:
     """The frame of an orientation image, and whether it is active, are what the list names."""
     found, block = ready(name, value, unit)
+    identity = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     base = found.new(values.IMAGE_TYPE)
-    found.set_rotation(base.mOriZero, NO_TURN)
+    found.set_rotation(base.mOriZero, identity)
     _, outputs = block.call_with_outputs(
         "GetOrientationImageWithOri",
         oriInfo=found.new(values.IMAGE_TYPE),
         csOriKin="MCS",
         bActive=False,
-        mR_flange=values.matrix(found, NO_TURN),
+        mR_flange=values.matrix(found, identity),
         aRef=values.axes(found, ()),
         cd=values.configuration(found, ()),
         oriInfoBase=base,

@@ -12,6 +12,8 @@ from tests.harness.library import Library, compile_st
 FOLDER = Path(__file__).resolve().parents[2] / "generated" / "st"
 SHARED = "softkin"
 """The folder of the objects that all units share."""
+NO_UNITS = (SHARED, "selftest")
+"""The folders whose objects are no kinematics."""
 
 
 @cache
