@@ -131,7 +131,7 @@ function loopOf(parts, values, tool) {
   };
   for (const crank of parts.cranks) {
     add(...crankOf(crank, at));
-    const { joints, at: centre, axis, body } = found.joints.at(-1);
+    const { joints, at: centre, axis, body } = found.joints[found.joints.length - 1];
     if (crank.isHeld) found.motors.push({ joints, at: centre, axis, body });
   }
   for (const rail of parts.rails) {
