@@ -96,7 +96,7 @@ class Window:
         one_turn = sp.And(sp.Not(unlimited), compared(sp.Le, high - low, ONE_TURN + tolerance))
         if self.turns != 1:
             lowest, highest = (real(f"{word}_{self.key}") for word in ("lowest", "highest"))
-            one_turn = sp.And(sp.Lt(highest, LARGEST / 2), sp.Le((highest - lowest) * self.turns, GEARED_TURN))
+            one_turn = sp.And(sp.Lt(highest, LARGEST), sp.Le((highest - lowest) * self.turns, GEARED_TURN))
         return (
             *widened,
             Let(flag(f"single_{self.key}"), one_turn, "at most one turn is inside the limits"),

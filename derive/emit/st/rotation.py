@@ -99,8 +99,8 @@ class LimitsFunction:
     """The variables of the function, with their types."""
     one_turn: str = literal(float(GEARED_TURN))
     """The widest range, in degrees of the joint, that holds one value for every direction."""
-    unlimited: str = literal(float(LARGEST / 2))
-    """More than any limit."""
+    unlimited: str = literal(float(LARGEST))
+    """Where the range of an axis without limits ends."""
 
 
 def limits_function(contract: Contract) -> LimitsFunction:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 MOST_TURNS = 254
 """The turns that are tried in each sense from the reference: as many as a period byte can name."""
-_UNLIMITED = LARGEST / 2
 _SAME = 1e-12
 """The share of an axis value that is rounding."""
 Measure: TypeAlias = Literal["squares", "largest"]
@@ -307,8 +306,8 @@ def _excess(robot: Mechanism, axes: Reals, turning: Turning) -> float:
     for i, (value, (low, high)) in enumerate(zip(axes + robot._limited_values(axes), turning.ranges, strict=True)):
         beyond = max(low - value, value - high, 0.0)
         if beyond > 0.0:
-            is_bounded = low > -_UNLIMITED and high < _UNLIMITED
+            is_bounded = low > -LARGEST and high < LARGEST
             in_turns = i >= len(robot.AXES) or robot.AXES[i].unit != "u"
-            size = high - low if is_bounded else whole if in_turns else abs(low if high >= _UNLIMITED else high)
+            size = high - low if is_bounded else whole if in_turns else abs(low if high >= LARGEST else high)
             total += (beyond / size) ** 2 if size > 0.0 else beyond
     return total
