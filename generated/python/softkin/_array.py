@@ -34,10 +34,10 @@ Truth: TypeAlias = NDArray[np.bool_] | bool
 Codes: TypeAlias = NDArray[np.uint8]
 """A `Status` for every row."""
 
-FEW = 16
-"""So many calls on plain numbers take no longer than a call on arrays."""
 FEW_SEARCHES = 512
-"""The same for a program whose loops call programs: on arrays it goes on until the slowest row is done."""
+"""So many calls on plain numbers of a program whose loops call programs take no longer than a call on arrays, which
+goes on until the slowest row is done.
+"""
 _TURN = 2.0 * np.pi
 _HALF_AND_EDGE = 180.0 + EDGE
 _BOTH_SIGNS = np.array([1, -1])
@@ -78,10 +78,10 @@ class Programs(ABC):
         given: Values,
         status: Codes,
         nothing: tuple[float, ...],
-        few: int = FEW,
+        few: int = 0,
     ) -> Values:
-        """The results of a shared program in the rows where it is wanted; `nothing` in all other rows. Few rows are
-        computed one after the other on plain numbers.
+        """The results of a shared program in the rows where it is wanted; `nothing` in all other rows. Up to `few`
+        rows are computed one after the other on plain numbers: the last digits may differ from those on arrays.
         """
         shape, found = status.shape, tuple(np.full(status.shape, value) for value in nothing)
         rows = np.flatnonzero(np.broadcast_to(wanted, shape) & (status == Status.OK))
