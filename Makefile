@@ -30,17 +30,17 @@ flat pacdrive: $(READY)
 
 # The modules of the catalogue, into build/javascript; what is derived already is taken from generated.cache/.
 javascript: $(READY)
-	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+	$(RUN) -m derive generate --language javascript --output $(OUT) $(OPTIONS)
 
 # Header and source of every machine, and the source that they share, into build/c.
 c: $(READY)
-	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS) $(if $(FRESH),--fresh)
+	$(RUN) -m derive generate --language c --output $(OUT) $(OPTIONS)
 
 # Kinematics modules of LinuxCNC and Klipper into build/linuxcnc and build/klipper, C for B&R into build/br, FMUs of FMI 3.0 into build/fmu: of the catalogue; with
 # MECHANISM=Kin_Scara3_Z of this machine; with MECHANISM=my_machine.py of a machine of your own.
 linuxcnc fmu klipper br: $(READY)
 	$(RUN) -m derive $(if $(wildcard $(MECHANISM)),derive $(MECHANISM) --out $(OUT),generate --output $(OUT) \
-		$(if $(MECHANISM),--only $(MECHANISM)) $(if $(FRESH),--fresh)) --language $@ $(OPTIONS)
+		$(if $(MECHANISM),--only $(MECHANISM))) --language $@ $(OPTIONS)
 
 # The same sources through clang, which the package ziglang brings; the tests compile them with gcc.
 clang: c
@@ -115,7 +115,7 @@ $(WHEEL)/ready:
 # IF_POSSIBLE=1: where it cannot run it says so in one line, and that is no failure.
 IF_POSSIBLE ?=
 prove-linuxcnc: $(READY)
-	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible) $(if $(FRESH),--fresh)
+	PYTHONPATH=generated/python $(RUN) -m prove.linuxcnc $(if $(IF_POSSIBLE),--if-possible)
 
 # The real Klipper reads a program and writes every step, without hardware: make prove-klipper KLIPPER=its checkout.
 KLIPPER ?=

@@ -39,15 +39,18 @@ _FORMAT = "softkin cache 1"
 class Cache:
     """A folder of entries: plain data (what JSON holds) by key."""
 
-    def __init__(self, folder: Path) -> None:
-        """The folder is created with the first entry."""
+    def __init__(self, folder: Path, *, fresh: bool = False) -> None:
+        """The folder is created with the first entry. fresh: it finds nothing, and keeps what is written."""
         self.folder = folder
+        self.fresh = fresh
         self.damaged: list[Path] = []
         """Entries that were found but had a wrong hash."""
 
     def read(self, key: str) -> Any | None:
         """The entry under a key; None if there is none, or only a damaged one."""
         path = self._path(key)
+        if self.fresh:
+            return None
         try:
             head, _, content = path.read_bytes().partition(b"\n")
         except OSError:

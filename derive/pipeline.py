@@ -7,7 +7,7 @@ import time
 from base64 import b64decode, b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
@@ -27,7 +27,7 @@ from derive.emit.python import package as python
 from derive.emit.python.package import NamedPackage
 from derive.emit.softmotion.library import StructuredTextFiles, most_axes
 from derive.faults import Failure, GenerationError, failure, one_line
-from derive.kinematics.kinematics import Evidence, Kinematics
+from derive.kinematics.kinematics import Evidence, Kinematics, evidence_of
 from derive.work import STEPS, TooMuchWork, at_most
 
 _PROCESSES = 2
@@ -62,7 +62,7 @@ class Built:
     pictures: Mapping[str, bytes]
     """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
     evidence: Evidence | None = None
-    """What the witness found; None if it was kept from an earlier run."""
+    """What the witness found."""
     undrawn: str = ""
     """Why there is no picture: a drawing is no part of the proof, and a machine without one is whole."""
 
@@ -83,13 +83,15 @@ class Built:
             "parts": dict(self.parts),
             "pictures": pictures,
             "undrawn": self.undrawn,
+            "evidence": self.evidence and asdict(self.evidence),
         }
 
 
 def from_plain(data: Mapping[str, Any]) -> Built:
     """What `as_plain` gave."""
     pictures = {name: b64decode(text) for name, text in data["pictures"].items()}
-    return Built(data["derived"], data["measured"], None, data["parts"], pictures, undrawn=data["undrawn"])
+    evidence = data["evidence"] and evidence_of(data["evidence"])
+    return Built(data["derived"], data["measured"], None, data["parts"], pictures, evidence, data["undrawn"])
 
 
 def _nobody(stage: str, found: str) -> None:
@@ -110,16 +112,16 @@ class Work:
         return tuple(entry for entry, kept in zip(self.entries, self.kept, strict=True) if kept is None)
 
 
-def work_of(entries: Sequence[Entry], cache: Cache | None, foundation: str) -> Work:
+def work_of(entries: Sequence[Entry], cache: Cache, foundation: str) -> Work:
     """The mechanisms of a run, with what a cache has of them."""
-    keys = tuple(entry_key(foundation, entry) if cache else None for entry in entries)
-    found = [cache.read(key) if cache and key else None for key in keys]
+    keys = tuple(entry_key(foundation, entry) for entry in entries)
+    found = [cache.read(key) if key else None for key in keys]
     return Work(tuple(entries), keys, tuple(None if data is None else from_plain(data) for data in found))
 
 
-def attempts(work: Work, profile: str | None, wanted: Sequence[str] = LANGUAGES) -> Iterator[Built | Failure]:
-    """What came of every mechanism, in the order of the catalogue. wanted: the languages that are written of it."""
-    attempt = partial(_attempt, profile, wanted)
+def attempts(work: Work, profile: str | None) -> Iterator[Built | Failure]:
+    """What came of every mechanism, in all languages, in the order of the catalogue."""
+    attempt = partial(_attempt, profile)
     if len(work.missing) < 2:  # here: no process has to be started
         alone = map(attempt, work.missing)
         yield from (next(alone) if kept is None else kept for kept in work.kept)
@@ -294,10 +296,10 @@ def _measured(kinematics: Kinematics) -> str:
     return f"{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}{exact}"
 
 
-def _attempt(profile: str | None, wanted: Sequence[str], entry: Entry) -> Built | Failure:
+def _attempt(profile: str | None, entry: Entry) -> Built | Failure:
     """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
     path, mechanism = entry
     try:
-        return derive_one(mechanism, profile, wanted=wanted)
+        return derive_one(mechanism, profile)
     except Exception as problem:
         return failure(path, problem)

@@ -55,7 +55,7 @@ grammar."""
 SHARED_BY_A_FOLDER = ("text/contract/",)
 """Folders whose files share all units compiled together: their tests run in one process."""
 OF_A_GENERATION = ("test_generated_is_fresh.py", "view/")
-"""Tests that share a fresh generation of the whole catalogue, or the browser that shows it."""
+"""Tests that share a generation of the whole catalogue, and the browser that shows it."""
 OF_A_TYPE_CHECKER = ("test_style.py", "typing/")
 """Tests that share what mypy keeps of the types that it read, where two processes must not write at once."""
 WITH_THEIR_MECHANISM = ("unit/drawing/", "unit/optimize/test_regular.py")
@@ -97,11 +97,11 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 
 
 @pytest.fixture(scope="session")
-def generation(tmp_path_factory: pytest.TempPathFactory) -> Generation:
-    """A fresh generation of the whole catalogue."""
+def generation() -> Generation:
+    """What the descriptions of the whole catalogue give."""
     from tests.generation import generated
 
-    return generated(tmp_path_factory.mktemp("generation"))
+    return generated()
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

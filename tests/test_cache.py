@@ -1,12 +1,14 @@
 """The cache of `generate`: what is kept is the same, what changed is derived anew, and what is damaged is never
 believed."""
 
+import json
 import os
 import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import sympy as sp
@@ -116,7 +118,7 @@ def test_sources_that_change_during_a_run_leave_nothing_behind(
 
 
 @pytest.mark.slow
-def test_check_and_fresh_never_look(
+def test_check_and_fresh_never_look_and_keep_what_they_derive(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     generated(folder, capsys)
@@ -124,18 +126,21 @@ def test_check_and_fresh_never_look(
     def refuse(*_: object) -> None:
         raise AssertionError("the cache was looked at")
 
-    monkeypatch.setattr(command_line, "Cache", refuse)
+    monkeypatch.setattr(caching, "json", SimpleNamespace(loads=refuse, dumps=json.dumps))
     options = ["--mechanisms", str(folder), "--output", str(folder.parent / "generated")]
     assert main(["check", *options]) == 0
+    shutil.rmtree(folder.parent / "generated.cache")
     assert main(["generate", *options, "--fresh"]) == 0
     capsys.readouterr()
     assert main(["generate", *options]) == 3  # as a mistake of the compiler
     assert "AssertionError: the cache was looked at" in capsys.readouterr().err
+    monkeypatch.undo()
+    assert generated(folder, capsys)[1:] == ([], "")
 
 
 def test_continuous_integration_derives_everything() -> None:
-    """The script exports FRESH, which the Makefile hands over as the option; no cache is committed."""
-    assert "\nexport FRESH=1\n" in (ROOT / ".ci" / "run").read_text()
+    """The script sets FRESH, which the Makefile hands over as the option; no cache is committed."""
+    assert "\nFRESH=1 make generate\n" in (ROOT / ".ci" / "run").read_text()
     assert "$(if $(FRESH),--fresh)" in (ROOT / "Makefile").read_text()
     assert "/generated.*/" in (ROOT / ".gitignore").read_text().splitlines()
     assert f"{OUTPUT}.cache".startswith(f"{OUTPUT}.")

@@ -1,4 +1,5 @@
-"""`generated/` is what a fresh generation gives: byte for byte, whatever the order of hashing, without orphans.
+"""`generated/` is what the descriptions give: byte for byte, without orphans. What `make generate` kept is compared, or
+what is derived anew where something changed since; `.ci/run` derives everything, in an order of hashing of its own.
 
 The generation asks the witness about every mechanism; what it found is held against the description here.
 """

@@ -1,7 +1,7 @@
 """`generate` and `check` without a file: the catalogue as a whole, and its output folder.
 
 `generate` keeps its results in a cache beside the output folder, and derives a mechanism again only where something
-changed on which it depends; `--fresh` neither reads nor writes that cache, and `check` never does.
+changed on which it depends; `--fresh` and `check` derive everything, and keep it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import MECHANISMS, Entry, catalogue, catalogue_and_faults
 from derive.faults import Failure, GenerationError
 from derive.output import differences, replace_folder, replace_parts
-from derive.pipeline import LANGUAGES, WRITTEN, Built, Work, attempts, files_of, languages, work_of
+from derive.pipeline import WRITTEN, Built, Work, attempts, files_of, languages, work_of
 from derive.progress import Progress
 
 _ROOT = MECHANISMS.parents[1]
@@ -72,34 +72,32 @@ def machine_files(options: argparse.Namespace) -> dict[str, bytes]:
 def _files(options: argparse.Namespace, entries: tuple[Entry, ...]) -> tuple[dict[str, bytes], list[Failure]]:
     """All files of a run, from the cache where it has them, and the mechanisms that could not be derived."""
     outputs = languages(options.profile, wanted=options.language or WRITTEN)
-    cache = None if options.fresh else Cache(Path(f"{OUTPUT if options.language else options.output}.cache"))
-    before = foundation(options.profile) if cache else ""
+    cache = Cache(Path(f"{OUTPUT if options.language else options.output}.cache"), fresh=options.fresh)
+    before = foundation(options.profile)
     work = work_of(chosen(entries, options.only), cache, before)
-    wanted = LANGUAGES if cache else [language.name for language in outputs]  # the cache has all of them
-    built, keys, faults = _derived(work, options.profile, wanted, cache, before)
-    is_unchanged = cache is not None and foundation(options.profile) == before
+    built, keys, faults = _derived(work, options.profile, cache, before)
+    is_unchanged = foundation(options.profile) == before
     files = files_of(built, outputs, cache, keys if is_unchanged else ()) if built else {}
-    if cache:
-        cache.tidy()
-        for path in cache.damaged:
-            print(f"note: {path} is damaged, and was not used", file=sys.stderr)
+    cache.tidy()
+    for path in cache.damaged:
+        print(f"note: {path} is damaged, and was not used", file=sys.stderr)
     return files, faults
 
 
 def _derived(
-    work: Work, profile: str | None, wanted: Sequence[str], cache: Cache | None, before: str
+    work: Work, profile: str | None, cache: Cache, before: str
 ) -> tuple[list[Built], list[str | None], list[Failure]]:
     """The results with their keys, and the failures; new results are put in the cache."""
     built: list[Built] = []
     keys: list[str | None] = []
     faults: list[Failure] = []
     progress = Progress(len(work.missing), sys.stdout)
-    for key, one in zip(work.keys, attempts(work, profile, wanted), strict=True):
+    for key, one in zip(work.keys, attempts(work, profile), strict=True):
         if isinstance(one, Failure):
             faults.append(one)
             continue
         progress.step(_line(one), one.seconds is not None)
-        if cache and key and one.seconds is not None and foundation(profile) == before:
+        if key and one.seconds is not None and foundation(profile) == before:
             cache.write(key, one.as_plain())
         built.append(one)
         keys.append(key)

@@ -5,6 +5,7 @@ It may import `kept` and `work`, and no folder.
 constants: the numerical constants of the product, except those of the root search
 graph: values as a graph, in which equal values are one node
 interpret: the reference interpreter, which executes a program over arrays
+one_row: a program as a function of Python's own numbers, for few rows
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
 primitives: the functions that every language implements, and their values on arrays
 program: programs, their statements and their statuses

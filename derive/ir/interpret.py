@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
 from functools import cache, partial
+from math import prod
 from operator import itemgetter
 
 import numpy as np
@@ -15,6 +14,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.ir.constants import DEGREE
+from derive.ir.one_row import Refused, Repeats, function_of
 from derive.ir.primitives import VALUES, solve
 from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, Status
 from derive.ir.symbols import Flag, is_count, is_decided
@@ -22,16 +22,8 @@ from derive.kept import kept_by_identity
 from derive.work import spend_steps
 
 Array = NDArray[np.float64]
-
-
-@dataclass
-class Repeats:
-    """How often the bodies of loops have run, for all rows together."""
-
-    passes: Counter[str] = field(default_factory=Counter)
-    """Passes of iterations, by their notes."""
-    runs: Counter[str] = field(default_factory=Counter)
-    """Runs of called programs, by their names."""
+FEW, FEW_OF_A_LOOP = 8, 150
+"""So many rows run one by one, which takes less time; of a program that iterates each row then ends by itself."""
 
 
 _REPEATS: ContextVar[Repeats | None] = ContextVar("repeats", default=None)
@@ -100,11 +92,47 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
     known = {**values, **{s.name: _as_declared(values[s.name], s) for s in program.inputs if s.name in values}}
     shape = _common_shape(v.shape if isinstance(v, np.ndarray) else np.shape(v) for v in values.values())
+    if _is_run_by_rows(program, prod(shape)) and _iterates(program):
+        return _one_by_one(program, known, shape)
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
         _execute(program.body, known, status)
         outputs = {o.name: _broadcast(evaluate(o.value, known), shape) for o in program.outputs}
     return outputs, status
+
+
+@kept_by_identity(500)
+def _iterates(program: Program) -> bool:
+    return any(isinstance(s, Iterate) for s in program.body) or any(_iterates(c.program) for c in program.calls())
+
+
+def _is_run_by_rows(program: Program, rows: int) -> bool:
+    return 0 < rows <= FEW or 0 < rows <= FEW_OF_A_LOOP and _iterates(program)
+
+
+def _one_by_one(
+    program: Program, known: Mapping[str, Array], shape: tuple[int, ...]
+) -> tuple[dict[str, Array], NDArray[np.object_]]:
+    """As `run`, row by row."""
+    function, counted = function_of(program), _REPEATS.get() or Repeats()
+    inputs = [_broadcast(known[s.name], shape).ravel().tolist() for s in program.inputs]
+    status = np.full(prod(shape), Status.OK, dtype=object)
+    found: list[tuple[float, ...] | None] = []
+    with np.errstate(all="ignore"):
+        for k in range(status.size):
+            before = counted.steps
+            try:
+                found.append(function(counted, *(column[k] for column in inputs)))
+            except Refused as refusal:
+                status[k] = refusal.args[0]
+                found.append(None)
+            spend_steps((counted.steps - before) // FEW, 1)
+    outputs = {}
+    for place, output in enumerate(program.outputs):
+        answers = np.array([row[place] for row in found if row is not None])
+        outputs[output.name] = np.zeros(status.size, answers.dtype)
+        outputs[output.name][status == Status.OK] = answers
+    return {name: values.reshape(shape) for name, values in outputs.items()}, status.reshape(shape)
 
 
 def _common_shape(all_shapes: Iterable[tuple[int, ...]]) -> tuple[int, ...]:
@@ -181,12 +209,20 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     counted.runs[call.program.name] += own.size
     given = {s.name: known[s.name] for s in call.constants} | {n.name: evaluate(v, known) for n, v in call.given}
     inner = {name: _broadcast(value, status.shape)[rows] for name, value in given.items()}
-    _execute(call.program.body if own.size else (), inner, own)
+    outputs, own = _outputs(call.program, inner, own)
     status[rows] = own if call.refusal is None else [s if s is Status.OK else call.refusal[0] for s in own]
-    outputs = {o.name: o.value for o in call.program.outputs}
     for name in call.names:
         known[name.name] = np.zeros(status.shape, _declared(name))
-        known[name.name][rows] = evaluate(outputs[name.name], inner) if own.size else 0.0
+        known[name.name][rows] = outputs[name.name] if own.size else 0.0
+
+
+def _outputs(program: Program, known: dict[str, Array], status: _Statuses) -> tuple[dict[str, Array], _Statuses]:
+    """The outputs and the statuses of a program that is called."""
+    if _is_run_by_rows(program, status.size):
+        outputs, own = _one_by_one(program, known, status.shape)
+        return outputs, np.where(status == Status.OK, own, status)
+    _execute(program.body if status.size else (), known, status)
+    return {o.name: evaluate(o.value, known) for o in program.outputs if status.size}, status
 
 
 def _loop(loop: Iterate) -> _Step:

@@ -206,12 +206,12 @@ def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
     size, columns, *shape = right.shape
     count = matrix[0, 0].size
     systems = np.concatenate([matrix, right], axis=1).reshape(size, size + columns, count)
-    answers = [_solved(systems[:, :, k].tolist(), size) for k in range(count)]
+    answers = [solved(systems[:, :, k].tolist(), size) for k in range(count)]
     solution = np.array([rows for _, rows in answers]).reshape(count, size, columns)
     return np.array([d for d, _ in answers]).reshape(shape), np.moveaxis(solution, 0, -1).reshape(right.shape)
 
 
-def _solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
+def solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
     """Determinant and solution of one system; every row ends in its right-hand sides."""
     nothing, most = (0.0, [[0.0] * len(row[size:]) for row in rows]), _SOLVABLE
     largest, determinant = max(abs(v) for row in rows for v in row[:size]), 1.0

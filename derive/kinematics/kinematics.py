@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
 from derive.ir.constants import LARGEST
@@ -94,6 +94,13 @@ class Evidence:
     inverted: Inverted | None
     """None for a mechanism without joints: there is nothing to invert."""
     exact: Exact
+
+
+def evidence_of(plain: Mapping[str, Any]) -> Evidence:
+    """The evidence of which `asdict` gave this, as JSON has it."""
+    found = plain["inverted"]
+    inverted = found and Inverted(**{**found, "missed": found["missed"] and tuple(found["missed"])})
+    return Evidence(plain["poses"], plain["closure_residual"], inverted, Exact(**plain["exact"]))
 
 
 @dataclass(frozen=True)

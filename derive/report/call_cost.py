@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from derive.ir.interpret import Repeats
+from derive.ir.one_row import Repeats
 from derive.kinematics.kinematics import Called, Case, Kinematics
 from derive.report.cost import Cost, cost_of, costs_of
 from derive.report.reference_calls import Machine, forward_counted, inverse_counted

@@ -19,7 +19,7 @@ from sympy.logic.boolalg import Boolean
 
 from derive.equations.rotation_repair import rotation_program, surely_exact
 from derive.ir.constants import DEGREE
-from derive.ir.interpret import Repeats
+from derive.ir.one_row import Repeats
 from derive.ir.primitives import Atan2, NearestOnArc, NearestPeriod, Root
 from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
 from derive.ir.tree import If, Item

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from derive.equations.rotation_repair import rotation_program
 from derive.ir.constants import COINCIDENT, EDGE, LARGEST, TIE
-from derive.ir.interpret import Array, Repeats, evaluate, repeats_counted, run
+from derive.ir.interpret import Array, evaluate, repeats_counted, run
+from derive.ir.one_row import Repeats
 from derive.ir.program import Program, Status
 from derive.ir.symbols import MAX_MISS, ROTATION_ENTRIES, branch_sign
 from derive.kinematics.kinematics import Bytes, Kinematics, Reals

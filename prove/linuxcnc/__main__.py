@@ -32,7 +32,6 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="prove.linuxcnc", description=__doc__)
     parser.add_argument("--folder", type=Path, default=Path(".linuxcnc"), help="where LinuxCNC is unpacked")
     parser.add_argument("--if-possible", action="store_true", help="end with 0 where it cannot be run")
-    parser.add_argument("--fresh", action="store_true", help="derive everything, without the cache")
     parser.add_argument("--only", nargs="*", default=[], metavar="NAME", help="these mechanisms alone")
     asked = parser.parse_args(arguments)
     folder: Path = asked.folder.resolve()
@@ -45,7 +44,7 @@ def main(arguments: list[str]) -> int:
         return 0 if asked.if_possible else CANNOT
     machines = [machine for machine in MACHINES if not asked.only or machine.mechanism in asked.only]
     try:
-        verdicts = judged(machines, linuxcnc, folder, asked.fresh)
+        verdicts = judged(machines, linuxcnc, folder)
     except NotWritten as reason:
         print(reason, file=sys.stderr)
         return FAILED
@@ -61,9 +60,9 @@ def main(arguments: list[str]) -> int:
     return FAILED if faults else 0
 
 
-def judged(machines: Sequence[Machine], linuxcnc: LinuxCNC, folder: Path, fresh: bool) -> list[Verdict]:
+def judged(machines: Sequence[Machine], linuxcnc: LinuxCNC, folder: Path) -> list[Verdict]:
     """The verdicts on these machines, some of which run at once: each has a room of its own."""
-    modules = written(machines, folder / "modules", fresh)
+    modules = written(machines, folder / "modules")
 
     def one(machine: Machine) -> Verdict:
         twin, work = Twin(machine), folder / "work" / machine.mechanism

@@ -42,15 +42,15 @@ class Module:
         return [f"setp {self.pin(name)} {float(value)!r}" for name, value in {**machine.sizes, **ends}.items()]
 
 
-def written(machines: Sequence[Machine], folder: Path, fresh: bool) -> dict[str, Module]:
+def written(machines: Sequence[Machine], folder: Path) -> dict[str, Module]:
     """The modules of these machines, by the names of their mechanisms, in this folder, which is made anew.
 
-    fresh: derived anew, else what is derived already is taken. Raises `NotWritten` where the compiler fails.
+    What is derived already is taken. Raises `NotWritten` where the compiler fails.
     """
     shutil.rmtree(folder, ignore_errors=True)
     names = [machine.mechanism for machine in machines]
     command = [sys.executable, "-m", "derive", "generate", "--language", "linuxcnc", "--output", str(folder)]
-    command += [*(["--fresh"] if fresh else []), "--only", *names]
+    command += ["--only", *names]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode != 0:
         raise NotWritten(done.stderr or done.stdout)

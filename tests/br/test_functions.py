@@ -43,7 +43,7 @@ def library(name: str) -> ctypes.CDLL:
     driver += ["-DWIRE_FRAME"] if "_br_wire_frame" in part["files"][f"{module}_br.h"] else []
     places = ["-I", folder, "-isystem", STUB]
     output_of(["gcc", *FLAGS, "-c", "-o", "/dev/null", *places, sources[2]])
-    output_of(["gcc", *FLAGS[:2], *FLAGS[-3:], *places, "-o", folder / "br.so", *driver, *sources, "-lm"])
+    output_of(["gcc", FLAGS[0], *FLAGS[-3:], *places, "-o", folder / "br.so", *driver, *sources, "-lm"])
     return ctypes.CDLL(str(folder / "br.so"))
 
 

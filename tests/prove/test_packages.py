@@ -165,7 +165,7 @@ def test_what_the_compiler_refuses_is_told(tmp_path: Path) -> None:
     old.parent.mkdir()
     old.write_text("old", encoding="utf-8")
     with pytest.raises(NotWritten, match="Kin_None"):
-        written([replace(SCARA, mechanism="Kin_None")], tmp_path, fresh=False)
+        written([replace(SCARA, mechanism="Kin_None")], tmp_path)
     assert not old.exists()
 
 

@@ -6,21 +6,17 @@ import pytest
 
 from tests.generation import Generation
 from tests.view.driver import BROWSER, available, driven
-from tests.view.pages import Seen, catalogue_page, kept_modules, own_page
+from tests.view.pages import Seen, catalogue_page, own_page
 
 PICTURES = Path(__file__).parents[2] / "build" / "view"
 """The pictures of the last run, to be looked at."""
 
 
 @pytest.fixture(scope="session")
-def pages(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+def pages(generation: Generation, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """The page of the catalogue, and that of one machine."""
-    modules = kept_modules()
-    if modules is None:
-        generation: Generation = request.getfixturevalue("generation")
-        modules = generation.modules
     folder = tmp_path_factory.mktemp("pages")
-    return available(lambda: (catalogue_page(folder, modules), own_page(folder)))
+    return available(lambda: (catalogue_page(folder, generation.modules), own_page(folder)))
 
 
 @pytest.fixture(scope="session")

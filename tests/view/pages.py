@@ -10,13 +10,10 @@ import numpy as np
 import softkin
 from PIL import Image
 
-from derive.cache import Cache, foundation
 from derive.command.catalogue import OUTPUT
 from derive.command.view import PACKAGES, content_of
-from derive.emit.javascript import package as javascript
 from derive.emit.language import RUNTIME, Part
 from derive.importing import meshes
-from derive.pipeline import work_of
 from derive.view.page import Content, page
 from tests.javascript.modules import files_of, part_of, written
 from tests.mechanisms import catalogue
@@ -29,15 +26,6 @@ def triangle() -> bytes:
     """A triangle with legs of 0.1, whose node is called "own"."""
     triangles = np.array([[0, 1, 2]], dtype=np.uint32)
     return meshes.glb([meshes.Part(meshes.Body("own"), np.array(_CORNERS), triangles, None)])
-
-
-def kept_modules() -> Mapping[str, bytes] | None:
-    """The modules of the catalogue as `make generate` kept them; None where one of them has to be derived."""
-    work = work_of(catalogue(), Cache(Path(f"{OUTPUT}.cache")), foundation(None))
-    if work.missing:
-        return None
-    parts = [kept.parts[javascript.name] for kept in work.kept if kept is not None]
-    return {name: text.encode() for name, text in javascript.files(parts).items()}
 
 
 def catalogue_page(folder: Path, modules: Mapping[str, bytes]) -> Path:
