@@ -24,7 +24,7 @@ CONTROLLED = 0.25
 """Of det A at home: less may be lost on the way from there."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TurningMachine(Machine):
     """A machine whose platform a loop turns; its poses are around home, regular, in its assembly mode."""
 
