@@ -27,7 +27,7 @@ def test_every_limit_refuses_alone(pairs: tuple[Pair, ...]) -> None:
     words = {joint.key: f"{joint.name}: " for joint in one.mechanism.joints}
     for name in sorted(words.keys() | {quantity.name for quantity in one.mechanism.limited}):
         chosen = [(sample, value) for sample in one.regular if (value := limited_value(one, sample, name)) is not None]
-        for sample, value in chosen[: 1 if one.mechanism.rods else 3]:
+        for sample, value in chosen[: 1 if one.mechanism.rods or one.mechanism.drives else 3]:
             beyond, tolerated = (share * (1.0 + abs(value)) for share in (BEYOND, TOLERATED))
             for lower, upper, expected in (
                 (value - beyond, value + WIDTH, OK),
