@@ -22,6 +22,7 @@ def random_one(pairs: tuple[Pair, ...]) -> Pair:
     return next(one for one in pairs if one.machine.label.startswith("random"))
 
 
+@pytest.mark.slow("Excavator", "RodPalletizer", "CylinderPalletizer")
 def test_every_limit_refuses_alone(pairs: tuple[Pair, ...]) -> None:
     one = random_one(pairs)
     words = {joint.key: f"{joint.name}: " for joint in one.mechanism.joints}
