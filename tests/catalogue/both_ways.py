@@ -1,5 +1,7 @@
 """Batch calls whose rows are compared with scalar calls: at every boundary both must decide the same."""
 
+from typing import Any
+
 import numpy as np
 import softkin
 from numpy.typing import ArrayLike
@@ -11,23 +13,27 @@ SAME = 1e-4
 """Tolerance in degrees or lengths: at a stretched arm rounding costs half of the digits."""
 
 
-def forward(robot: softkin.Mechanism, axes: Array) -> tuple[Array, Array, Array, Array]:
-    """`forward_batch`; frames, configurations and statuses are those of the scalar calls, and so are orientations."""
-    positions, rotations, configurations, statuses = robot.forward_batch(axes)
+def forward(robot: Any, axes: Array, start: tuple[Array, Array] | None = None) -> tuple[Array, Array, Array, Array]:
+    """`forward_batch`; frames, configurations and statuses are those of the scalar calls, and so are orientations.
+
+    start: positions and rotations where forward kinematics starts, of a machine that iterates.
+    """
+    starts = [()] * len(axes) if start is None else [(one,) for one in zip(*start, strict=True)]
+    positions, rotations, configurations, statuses = robot.forward_batch(axes, *(() if start is None else (start,)))
     single, said, written = np.full(positions.shape, np.nan), statuses.tolist(), configurations.tolist()
     turned = np.full(rotations.shape, np.nan)
     for row, values in enumerate(axes.tolist()):
         try:
-            frame, configuration = robot.forward(values)
+            frame, configuration = robot.forward(values, *starts[row])
         except KinematicsError as error:
             assert error.status == said[row]
         else:
             assert said[row] == Status.OK
             assert list(configuration) == written[row]
             single[row], turned[row] = frame
-            assert robot.orientation(values) == frame.rotation
+            assert robot.orientation(values, *starts[row]) == frame.rotation
     answered = statuses == Status.OK
-    size = 1e-14 * (np.abs(axes).max(initial=0.0) + np.abs(positions[answered]).max(initial=0.0) + 1000.0)
+    size = 1e-14 * (np.abs(axes[answered]).max(initial=0.0) + np.abs(positions[answered]).max(initial=0.0) + 1000.0)
     assert np.allclose(single[answered], positions[answered], rtol=0.0, atol=size)
     assert np.allclose(turned[answered], rotations[answered], rtol=0.0, atol=1e-14)
     return positions, rotations, configurations, statuses

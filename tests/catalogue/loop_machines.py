@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import Mechanism, Role
 from derive.ir.symbols import POSITION
 from tests.catalogue.closure import Array, Closure, Formula, derivative
-from tests.catalogue.machines import TURNS, Machine
+from tests.catalogue.machines import Pooled
 from tests.mechanisms import catalogue
 from tests.random_axes import random_axes
 
@@ -137,19 +137,10 @@ def facings(robot: softkin.Mechanism, count: int) -> Array | None:
 
 
 @dataclass(frozen=True, eq=False)
-class LoopMachine(Machine):
+class LoopMachine(Pooled):
     """A machine that is a closed loop; its poses are regular, on its side and inside its bounds."""
 
     closure: LoopClosure
-
-    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Random axis values of regular poses, over several turns where `farthest` (degrees) allows."""
-        turning = np.array([j.multi_turn for j in self.mechanism.joints])
-        pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
-        chosen = pool[rng.integers(len(pool), size=count)]
-        if farthest < TURNS:
-            return chosen
-        return chosen + 360.0 * turning * rng.integers(-2, 3, chosen.shape)
 
     def is_regular(self, axes: Array) -> Array:
         """Whether axis values can be assembled, away from every singularity."""

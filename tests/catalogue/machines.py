@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -179,6 +180,22 @@ class Machine:
             size = 180.0 if joint.is_angle else self.reach
         low, high = joint.domain or (-size, size)
         return max(low, -size), min(high, size)
+
+
+class Pooled(Machine):
+    """A machine whose regular poses are found once, and drawn from these."""
+
+    @property
+    @abstractmethod
+    def pool(self) -> Array:
+        """Axis values of regular poses."""
+
+    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
+        """Random axis values of regular poses, over several turns where `farthest` (degrees) allows."""
+        turning = np.array([j.multi_turn for j in self.mechanism.joints])
+        pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
+        chosen = pool[rng.integers(len(pool), size=count)]
+        return chosen if farthest < TURNS else chosen + 360.0 * turning * rng.integers(-2, 3, chosen.shape)
 
 
 def few(machines: tuple[M, ...]) -> tuple[M, ...]:

@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tests.catalogue.turning_machines import TurningMachine, turning_machine
 from tests.mechanisms import named
 
 Array = NDArray[np.float64]
-_STARTS, _STEPS, _LONGEST = 2000, 60, (200.0, 0.5)
-"""Newton's method, with steps that are at most so long, in lengths and radians."""
+_STARTS = 2000
+"""Of Newton's method."""
 _HEADINGS, _HALVINGS = 40001, 50
 
 
@@ -31,48 +32,37 @@ def points_of(given: Mapping[str, float], side: str, letters: str) -> Array:
     raise AssertionError
 
 
-def hexapod(seed: int) -> dict[str, float]:
+def hexapod(seed: int) -> TurningMachine:
     """A hexapod with its joints in no plane; the nominal one for seed 0."""
     rng = np.random.default_rng(seed)
     size = 0.0 if seed == 0 else 90.0
     names = [f"{side}_{i}_{k}" for side in ("base", "platform") for i in range(1, 7) for k in "xyz"]
     nominal = nominal_of("Kin_Hexapod")
-    return nominal | {name: nominal[name] + size * rng.uniform(-1.0, 1.0) for name in names}
+    given = nominal | {name: nominal[name] + size * rng.uniform(-1.0, 1.0) for name in names}
+    return turning_machine(named("Kin_Hexapod"), f"hexapod {seed}", given)
 
 
-def lengths_of(given: Mapping[str, float]) -> Array:
-    """The lengths of the legs of a hexapod at a pose beside its home."""
-    turned = Rotation.from_rotvec([0.1, -0.15, 0.2]).as_matrix()
-    legs = legs_of(given, np.array([[20.0, -30.0, 610.0]]), turned[None])[0]
-    return np.asarray(np.linalg.norm(legs, axis=1))
+def beside_home(machine: TurningMachine) -> Array:
+    """Axis values of a pose beside the home of a hexapod."""
+    turn = Rotation.from_rotvec([0.1, -0.15, 0.2]).as_matrix()
+    joints, closed = machine.closure.joints_at(np.array([[20.0, -30.0, 610.0]]), turn[None], np.random.default_rng(1))
+    assert closed.all()
+    return machine.closure.axes(joints)[0]
 
 
-def legs_of(given: Mapping[str, float], position: Array, rotations: Array) -> Array:
-    """The vectors from base to platform of every leg, for positions (N, 3) and rotations (N, 3, 3)."""
-    base, platform = (points_of(given, side, "xyz") for side in ("base", "platform"))
-    return np.asarray(position[:, None] + np.einsum("nij,kj->nki", rotations, platform) - base)
+def missed(machine: TurningMachine, axes: Array, poses: Array) -> float:
+    """The largest residual of the closure at poses, a row of position and rotation each."""
+    joints = machine.closure.joints(np.tile(axes, (len(poses), 1)))
+    return float(np.abs(machine.closure.equations(joints, poses[:, :3], poses[:, 3:].reshape(-1, 3, 3))).max())
 
 
-def poses_of_a_hexapod(given: Mapping[str, float], lengths: Array) -> Array:
-    """Its poses, a row of position and rotation each: what Newton's method finds from random starts."""
-    rng = np.random.default_rng(7)
-    platform = points_of(given, "platform", "xyz")
-    position = rng.uniform(-900.0, 900.0, (_STARTS, 3))
-    rotation = Rotation.random(_STARTS, random_state=7)
-    for _ in range(_STEPS):
-        rows = rotation.as_matrix()
-        legs = legs_of(given, position, rows)
-        along = legs / np.linalg.norm(legs, axis=2, keepdims=True)
-        moments = np.cross(np.einsum("nij,kj->nki", rows, platform), along)
-        missed = np.linalg.norm(legs, axis=2) - lengths
-        matrix = np.concatenate([along, moments], axis=2) + 1e-12 * np.eye(6)
-        step = -np.linalg.solve(matrix, missed[..., None])[..., 0]
-        sizes = np.linalg.norm(step.reshape(-1, 2, 3), axis=2) / _LONGEST
-        step /= np.maximum(1.0, sizes.max(axis=1))[:, None]
-        position, rotation = position + step[:, :3], Rotation.from_rotvec(step[:, 3:]) * rotation
-    rows = rotation.as_matrix()
-    missed = np.abs(np.linalg.norm(legs_of(given, position, rows), axis=2) - lengths).max(axis=1)
-    return different(np.concatenate([position, rows.reshape(-1, 9)], axis=1)[missed < 1e-7], 1e-3)
+def every_pose(machine: TurningMachine, axes: Array) -> Array:
+    """The poses at axes, a row of position and rotation each: what Newton's method finds from random starts."""
+    positions = np.random.default_rng(7).uniform(-1.5, 1.5, (_STARTS, 3)) * machine.reach
+    rotations = Rotation.random(_STARTS, random_state=7).as_matrix()
+    joints = machine.closure.joints(np.tile(axes, (_STARTS, 1)))
+    positions, rotations, closed = machine.closure.ends(joints, positions, rotations)
+    return different(np.concatenate([positions, rotations.reshape(-1, 9)], axis=1)[closed], 1e-3)
 
 
 def different(rows: Array, within: float) -> Array:

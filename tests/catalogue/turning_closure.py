@@ -58,9 +58,17 @@ class TurningClosure(Closure):
     def poses(self, axes: Array) -> tuple[Array, Array]:
         """The pose to which Newton's method leads from home; not a number where that is none of this machine."""
         joints = self.joints(axes)
-        positions = np.tile(self.home_position, (len(axes), 1))
-        rotations = np.tile(self.home_rotation, (len(axes), 1, 1))
-        moving = np.arange(len(axes))
+        home = np.tile(self.home_position, (len(axes), 1)), np.tile(self.home_rotation, (len(axes), 1, 1))
+        positions, rotations, good = self.ends(joints, *home)
+        good &= self.side(joints, positions, rotations) > 0
+        good &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
+        positions[~good], rotations[~good] = np.nan, np.nan
+        return positions, rotations
+
+    def ends(self, joints: Array, positions: Array, rotations: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Where Newton's method leads from poses, and whether the loop closes there."""
+        positions, rotations = positions.copy(), rotations.copy()
+        moving = np.arange(len(joints))
         for _ in range(PASSES):
             state = joints[moving], positions[moving], rotations[moving]
             step = (np.linalg.pinv(self.by_pose(*state)) @ self._stated(*state)[:, :, None])[:, :, 0]
@@ -70,10 +78,7 @@ class TurningClosure(Closure):
             if not len(moving):
                 break
         left = np.abs(self._stated(joints, positions, rotations)).max(axis=1)
-        good = (left < CLOSED * self.reach) & (self.side(joints, positions, rotations) > 0)
-        good &= (self.positive_at(joints, positions, rotations) > 0).all(axis=1)
-        positions[~good], rotations[~good] = np.nan, np.nan
-        return positions, rotations
+        return positions, rotations, left < CLOSED * self.reach
 
     def joints_at(self, positions: Array, rotations: Array, rng: Generator) -> tuple[Array, NDArray[np.bool_]]:
         """Joint values at poses, on any branch, and whether they close the loop."""

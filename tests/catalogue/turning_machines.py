@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from derive.description.mechanism import Mechanism, Parameter, Role
 from tests.catalogue.closure import Array
-from tests.catalogue.machines import TURNS, Machine
+from tests.catalogue.machines import Machine, Pooled
 from tests.catalogue.turning_closure import TurningClosure
 from tests.mechanisms import catalogue
 
@@ -24,18 +24,11 @@ CONTROLLED = 0.25
 """Of det A at home: less may be lost on the way from there."""
 
 
-@dataclass(frozen=True)
-class TurningMachine(Machine):
+@dataclass(frozen=True, eq=False)
+class TurningMachine(Pooled):
     """A machine whose platform a loop turns; its poses are around home, regular, in its assembly mode."""
 
     closure: TurningClosure
-
-    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
-        """Axis values of regular poses around home, over several turns where `farthest` (degrees) allows."""
-        turning = np.array([j.multi_turn for j in self.mechanism.joints])
-        pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
-        chosen = pool[rng.integers(len(pool), size=count)]
-        return chosen if farthest < TURNS else chosen + 360.0 * turning * rng.integers(-2, 3, chosen.shape)
 
     def is_regular(self, axes: Array) -> Array:
         """Whether axis values can be assembled, away from every singularity."""

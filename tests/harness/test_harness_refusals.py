@@ -1,5 +1,7 @@
 """Every rule of the dialect is shown by a small text that breaks only that rule."""
 
+from collections.abc import Callable
+
 import pytest
 
 from tests.harness.library import StError, compile_st
@@ -124,13 +126,6 @@ BODIES = {
 }
 
 
-@pytest.mark.parametrize("name", BODIES)
-def test_a_body_that_breaks_a_rule_is_refused(name: str) -> None:
-    body, message = BODIES[name]
-    silent = "FUNCTION Silent\nVAR\n q : BOOL;\nEND_VAR\nq := TRUE;\nEND_FUNCTION\n"
-    assert message in refused(CALLEE + silent + FUNCTION.format(variables=VARIABLES, body=body))
-
-
 READER = """
 FUNCTION Reader : LREAL
 VAR_IN_OUT CONSTANT v : LREAL; w : ARRAY[0..8] OF LREAL; END_VAR
@@ -200,12 +195,6 @@ VARIABLES_REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", VARIABLES_REFUSED)
-def test_a_declaration_that_breaks_a_rule_is_refused(name: str) -> None:
-    variables, message = VARIABLES_REFUSED[name]
-    assert message in refused(FUNCTION.format(variables=variables, body=""))
-
-
 def method(body: str, sections: str = "", name: str = "Act", result: str = "") -> str:
     return f"METHOD PUBLIC {name}{result}\n{sections}\n{body}\nEND_METHOD\n"
 
@@ -246,12 +235,6 @@ MEMBERS = {
 }
 
 
-@pytest.mark.parametrize("name", MEMBERS)
-def test_a_member_that_breaks_a_rule_is_refused(name: str) -> None:
-    members, message = MEMBERS[name]
-    assert message in refused(BLOCK.format(members=members))
-
-
 def test_a_block_that_runs_by_its_body_may_write() -> None:
     """Where all methods are private or protected, body and methods write; an input is written by none, and one public
     method, of the block or of its base, brings the rule back.
@@ -284,12 +267,6 @@ INSTANCES = {
 }
 
 
-@pytest.mark.parametrize("name", INSTANCES)
-def test_a_use_of_an_instance_that_breaks_a_rule_is_refused(name: str) -> None:
-    body, message = INSTANCES[name]
-    assert message in refused(INNER + USER.format(body=body))
-
-
 OBJECTS = {
     "the same object twice": (BLOCK.format(members="") * 2, "duplicate name Probe"),
     "the name of a library type": ("TYPE Axispos_Ref : STRUCT x : LREAL; END_STRUCT END_TYPE", "duplicate name"),
@@ -305,10 +282,22 @@ OBJECTS = {
 }
 
 
-@pytest.mark.parametrize("name", OBJECTS)
-def test_an_object_that_breaks_a_rule_is_refused(name: str) -> None:
-    text, message = OBJECTS[name]
-    assert message in refused(text)
+SILENT = "FUNCTION Silent\nVAR\n q : BOOL;\nEND_VAR\nq := TRUE;\nEND_FUNCTION\n"
+AROUND: dict[str, tuple[dict[str, tuple[str, str]], Callable[[str], str]]] = {
+    "a body": (BODIES, lambda body: CALLEE + SILENT + FUNCTION.format(variables=VARIABLES, body=body)),
+    "a declaration": (VARIABLES_REFUSED, lambda variables: FUNCTION.format(variables=variables, body="")),
+    "a member": (MEMBERS, lambda members: BLOCK.format(members=members)),
+    "a use of an instance": (INSTANCES, lambda body: INNER + USER.format(body=body)),
+    "an object": (OBJECTS, str),
+}
+"""What breaks a rule, with the message, and the text around it."""
+
+
+@pytest.mark.parametrize(("part", "name"), [(part, name) for part, (rules, _) in AROUND.items() for name in rules])
+def test_what_breaks_a_rule_is_refused(part: str, name: str) -> None:
+    rules, whole = AROUND[part]
+    text, message = rules[name]
+    assert message in refused(whole(text))
 
 
 def test_the_message_names_file_and_line() -> None:

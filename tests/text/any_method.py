@@ -10,8 +10,8 @@ from tests.harness.instance import Entry
 from tests.text import values
 from tests.text.controller import OK, Controller
 from tests.text.coupling.blocks import OrientationPair
+from tests.text.pairs import Pair
 from tests.text.samples import Rows, Sample
-from tests.text.serial_pairs import SerialPair
 from tests.text.settings import settings
 from tests.text.units import public_methods
 
@@ -55,7 +55,7 @@ def methods_of(controller: Controller) -> list[str]:
     return [name for name in public_methods(controller.mechanism) if name != "Initialize"]
 
 
-def call_of(pair: SerialPair, controller: Controller, method: str, sample: Sample) -> Call:
+def call_of(pair: Pair, controller: Controller, method: str, sample: Sample) -> Call:
     """A method with arguments that fit a pose; what it writes holds what means nothing."""
     entry: Entry = controller.block.routines[method.lower()]
     given = _fitting(pair, sample)
@@ -73,7 +73,7 @@ def call_of(pair: SerialPair, controller: Controller, method: str, sample: Sampl
     return Call(controller, method, arguments, tuple(written), has_status)
 
 
-def _fitting(pair: SerialPair, sample: Sample) -> dict[str, Any]:
+def _fitting(pair: Pair, sample: Sample) -> dict[str, Any]:
     """An argument for every input in the contract, by its name."""
     library = pair.library
     position, rotation, data = pair.controller.forward(sample.axes)[1]

@@ -1,6 +1,5 @@
 """A machine as a function block and in Python, with the names that `tests.text.comparisons` reads."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,15 +8,6 @@ import softkin
 from derive.description.mechanism import Mechanism
 from tests.harness.library import Library
 from tests.text.controller import Controller
-
-
-@dataclass(frozen=True, eq=False)
-class Machine:
-    label: str
-    mechanism: Mechanism
-    given: Mapping[str, float]
-    robot: softkin.Mechanism
-    reach: float = 300.0
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from derive.description.mechanism import Mechanism
-from tests.text.serial_pairs import MECHANISMS
+from tests.text.pairs import MECHANISMS
 from tests.text.units import file_of, shared_texts, text_of
 
 (MECHANISM,) = (m for m in MECHANISMS if m.name == "Kin_Scara4_ZCcoupled_Type1")

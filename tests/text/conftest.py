@@ -4,9 +4,7 @@ serial mechanisms alone, one that asks for `loops` for those with rods."""
 import pytest
 
 from derive.description.mechanism import Mechanism
-from tests.text.loops.machines import LOOPS, Loop, loops_of
-from tests.text.pairs import POSITION_KINEMATICS, Pair, pairs_of
-from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.pairs import LOOPS, MECHANISMS, POSITION_KINEMATICS, Pair, pairs_of
 
 
 @pytest.fixture(params=POSITION_KINEMATICS, ids=lambda m: m.name)
@@ -16,9 +14,9 @@ def pairs(request: pytest.FixtureRequest) -> tuple[Pair, ...]:
 
 
 @pytest.fixture(params=LOOPS, ids=lambda m: m.name)
-def loops(request: pytest.FixtureRequest) -> tuple[Loop, ...]:
+def loops(request: pytest.FixtureRequest) -> tuple[Pair, ...]:
     """The machines of a mechanism with rods, each as a block and in Python."""
-    return loops_of(request.param)
+    return pairs_of(request.param)
 
 
 @pytest.fixture(params=MECHANISMS, ids=lambda m: m.name)
@@ -27,5 +25,5 @@ def mechanism(request: pytest.FixtureRequest) -> Mechanism:
 
 
 @pytest.fixture
-def serial_pairs(mechanism: Mechanism) -> tuple[SerialPair, ...]:
-    return serial_pairs_of(mechanism)
+def serial_pairs(mechanism: Mechanism) -> tuple[Pair, ...]:
+    return pairs_of(mechanism)

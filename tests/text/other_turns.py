@@ -17,7 +17,7 @@ TURNS = (-3, -2, -1, 1, 2, 3)
 
 
 def check_other_turns(one: Any, sample: Sample) -> int:
-    """For every axis of a machine (`SerialPair` or a loop) that turns, and for all turns; the number of those that were
+    """For every axis of a machine that turns, and for all turns; the number of those that were
     named.
     """
     tried = 0

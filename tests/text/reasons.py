@@ -14,7 +14,7 @@ _SHEAR = 1e-4
 
 
 def provoke(one: Any, sample: Sample) -> None:
-    """Both languages give the same reason for a machine (`SerialPair` or a loop) at a pose, and for
+    """Both languages give the same reason for a machine at a pose, and for
     every command beside it.
     """
     for command in _commands(one, sample):

@@ -19,8 +19,10 @@ Bytes = tuple[int, ...]
 MANY, SOME = 150, 100
 """A grid of more poses than MANY is thinned out to SOME: the package is tested on all of them."""
 COINCIDING = 16
-SAMPLES = 16
+SAMPLES, OF_A_LOOP = 16, 36
 """Random samples of one machine."""
+ANYWHERE = 16
+"""Axis values of a loop, drawn without asking whether it closes."""
 NO_TURN: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HALF_TURN: Rows = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
 """The tool points the opposite way."""
@@ -49,13 +51,20 @@ class Command:
 
 
 @cache
-def regular(machine: Machine, count: int = SAMPLES) -> tuple[Sample, ...]:
+def regular(machine: Machine) -> tuple[Sample, ...]:
     """Random samples away from singular poses; where there are limits, checked or not, half of them inside."""
+    count = OF_A_LOOP if machine.mechanism.rods else SAMPLES
     rng = np.random.default_rng(sum(machine.label.encode()))
     axes = machine.draw(count, rng)
     if any(machine.robot.parameters[f"upper_{j.key}"] for j in machine.mechanism.joints):
         axes = np.concatenate([axes[: count // 2], draw_inside(machine, count // 2, rng)])
     return tuple(_sample(machine, row, rng) for row in axes.tolist())
+
+
+def samples_at(machine: Machine, axes: Iterable[Iterable[float]]) -> tuple[Sample, ...]:
+    """Samples at axis values that are chosen, whatever they are."""
+    rng = np.random.default_rng(17)
+    return tuple(_sample(machine, list(map(float, row)), rng) for row in axes)
 
 
 def grid(machine: Machine) -> tuple[Sample, ...]:
@@ -100,12 +109,13 @@ def one_wrong_byte(own: Bytes, branches: int, sample: Sample) -> Bytes:
 
 def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
     count, scale = len(axes), np.where(machine.closure.angles, 400.0, machine.reach)
+    aside = (0.05 if machine.mechanism.rods else 0.4) * machine.reach
     size = len(machine.robot.CONFIGURATION)
     return Sample(
         axes=tuple(axes),
         reference=tuple((np.array(axes) + rng.uniform(-1.0, 1.0, count) * scale).tolist()),
         rotation=tilted(rng),
-        offset=tuple((rng.uniform(-0.4, 0.4, 3) * machine.reach).tolist()),
+        offset=tuple((rng.uniform(-1.0, 1.0, 3) * aside).tolist()),
         data=tuple(rng.integers(0, 256, size).tolist()),
     )
 

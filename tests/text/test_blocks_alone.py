@@ -12,31 +12,29 @@ from tests.catalogue.coupling.parts import ORIENTATIONS
 from tests.catalogue.references import held_at
 from tests.harness.library import Library
 from tests.text.any_method import call_of, methods_of
-from tests.text.comparisons import POSELESS
+from tests.text.comparisons import COMPARISONS, POSELESS
 from tests.text.controller import IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.limits import EXACTLY_A_TURN, has_limits, is_inside
-from tests.text.loops.machines import LOOPS, Loop
-from tests.text.pairs import POSITION_KINEMATICS, Pair, comparisons_of, pairs_of
-from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.pairs import LOOPS, MECHANISMS, POSITION_KINEMATICS, Pair, pairs_of
 from tests.text.units import compiled, compiled_text, file_of, public_methods, text_of
 
 ROUND_TRIP = 1e-9
 """Away from singular poses: relative to a turn, or to the size of the machine."""
 
 
-def unlimited(serial_pairs: tuple[SerialPair, ...]) -> list[SerialPair]:
+def unlimited(serial_pairs: tuple[Pair, ...]) -> list[Pair]:
     """The machines on which every pose is allowed."""
     return [t for t in serial_pairs if not has_limits(t.machine)]
 
 
-def is_limited(one: SerialPair) -> bool:
+def is_limited(one: Pair) -> bool:
     """Whether limits are given that some samples are beyond, checked or not."""
     if one.machine.label == EXACTLY_A_TURN:
         return any(joint.is_angle for joint in one.mechanism.joints)
     return one.machine.label.startswith("limit")
 
 
-def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[Pair, ...]) -> None:
     """With the bytes that forward kinematics writes, wherever the reference is where every byte can hold its turn."""
     for one in unlimited(serial_pairs):
         for sample in one.regular:
@@ -52,7 +50,7 @@ def test_inverse_kinematics_finds_the_axes_of_a_pose(serial_pairs: tuple[SerialP
             assert axes[count:] == (0.0,) * (6 - count)
 
 
-def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[Pair, ...]) -> None:
     """Where every byte says what was chosen, and so no other solution is possible."""
     for one in serial_pairs:
         inside = is_inside(one.machine, np.array([sample.axes for sample in one.regular]))
@@ -64,12 +62,12 @@ def test_limits_refuse_what_is_beyond_them_and_nothing_else(serial_pairs: tuple[
         assert set(inside) == ({True, False} if is_limited(one) else {True})
 
 
-def test_the_number_of_axes(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_the_number_of_axes(serial_pairs: tuple[Pair, ...]) -> None:
     for one in serial_pairs:
         assert one.controller.block.get("NumAxes") == len(one.mechanism.joints)
 
 
-def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[Pair, ...]) -> None:
     one = serial_pairs[1]
     fields = [v.name for section in one.library.objects[one.mechanism.block_name].sections for v in section.variables]
     before = [getattr(one.controller.block, name) for name in fields]
@@ -77,7 +75,7 @@ def test_calling_the_block_itself_does_nothing(serial_pairs: tuple[SerialPair, .
     assert [getattr(one.controller.block, name) for name in fields] == before
 
 
-def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tuple[Pair, ...]) -> None:
     """A flange with one degree of freedom turns about its axis; one with none does not turn."""
     for one in serial_pairs:
         whole = "GetOrientationImage".lower() not in one.controller.methods
@@ -95,7 +93,7 @@ def test_the_orientation_is_that_of_the_frame_and_in_the_image(serial_pairs: tup
                 assert rotation == zero
 
 
-def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: tuple[Pair, ...]) -> None:
     """For tilted commands: GetFlangeOrientationImageWithOri, and forward kinematics of inverse kinematics."""
     for one in unlimited(serial_pairs):
         if "getflangeorientationimagewithori" not in one.controller.methods:
@@ -116,7 +114,7 @@ def test_the_projected_orientation_is_the_one_that_the_axes_reach(serial_pairs: 
 
 
 @pytest.mark.long
-def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[Pair, ...]) -> None:
     """Round trip of the offset interface, with the configuration that it gives itself."""
     for one in unlimited(serial_pairs):
         if "cartesiantoaxes_offset" not in one.controller.methods:
@@ -134,7 +132,7 @@ def test_a_point_off_the_flange_comes_to_its_place(serial_pairs: tuple[SerialPai
                 assert found == pytest.approx(point, abs=1e-9 * size), f"{one} {sample} {offset}"
 
 
-def place(one: SerialPair, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
+def place(one: Pair, axes: tuple[float, ...], offset: tuple[float, ...]) -> list[float]:
     """Where a point of the flange is at axis values, by the block's own forward kinematics."""
     position, rotation, _ = one.controller.forward(axes)[1]
     turned = [sum(r * o for r, o in zip(row, offset, strict=True)) for row in rotation]
@@ -153,7 +151,7 @@ def test_a_gear_of_one_turn_changes_nothing() -> None:
     axis.
     """
     mechanism = next(m for m in MECHANISMS if m.name == "Kin_Scara4_ZCcoupled_Type1")
-    one = serial_pairs_of(mechanism)[0]
+    one = pairs_of(mechanism)[0]
     other = Controller(geared(mechanism), mechanism)
     assert other.initialise(one.robot.parameters) == OK
     for sample in one.regular[:10]:
@@ -191,12 +189,12 @@ def test_every_method_is_here(mechanism: Mechanism) -> None:
 @pytest.mark.long("Hexapod", "P2C_Type1.CartesianToAxes", "Pos_RRR.CartesianToAxes", "ToAxes_Offset", "Diagnose")
 @pytest.mark.parametrize(("mechanism", "method"), METHODS, ids=[f"{m.block_name}.{method}" for m, method in METHODS])
 def test_a_method_answers_as_in_python(mechanism: Mechanism, method: str) -> None:
-    compare = comparisons_of(mechanism)[method]
+    compare = COMPARISONS[method]
     for pair in pairs_of(mechanism):
-        regular = pair.regular[:: 2 if isinstance(pair, Loop) else 1]  # which has many, for its limits
+        regular = pair.regular[:: 2 if mechanism.rods else 1]  # which has many, for its limits
         for sample in regular[: 3 if method in POSELESS else None]:
             compare(pair, sample)
-        for sample in pair.any if isinstance(pair, Loop) and method in EVERYWHERE else ():
+        for sample in pair.anywhere if method in EVERYWHERE else ():
             compare(pair, sample)
 
 

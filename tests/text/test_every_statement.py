@@ -29,10 +29,10 @@ from tests.text import (
     test_singular_poses,
 )
 from tests.text.comparisons import COMPARISONS, POSELESS
+from tests.text.pairs import MECHANISMS, Pair, pair_of, pairs_of
 from tests.text.reasons import provoke
 from tests.text.samples import Sample, coinciding
 from tests.text.selftest import test_self_test
-from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pair, serial_pairs_of
 from tests.text.statements import Statements
 from tests.text.units import compiled, compiled_shared, file_of, shared_texts, text_of
 
@@ -54,7 +54,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
 
     What no other test asks is asked in any case; what others ask, too, only as long as a statement has not run.
     """
-    serial_pairs = serial_pairs_of(mechanism)
+    serial_pairs = pairs_of(mechanism)
     statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():
         test_axis_settings.every_statement_of_the_settings(mechanism)
@@ -71,21 +71,19 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     assert left_out(mechanism, statements) == []
 
 
-def again(serial_pairs: tuple[SerialPair, ...]) -> Iterator[Callable[[], None]]:
+def again(serial_pairs: tuple[Pair, ...]) -> Iterator[Callable[[], None]]:
     """A few of the samples at which `test_blocks_alone` asks all."""
     for one in (one for one in serial_pairs if one.machine.label in MACHINES):
         yield from (partial(compare_all, one, sample, POSED) for sample in few(one.regular, FEW))
 
 
-def on_the_grid(serial_pairs: tuple[SerialPair, ...]) -> Iterator[Callable[[], None]]:
+def on_the_grid(serial_pairs: tuple[Pair, ...]) -> Iterator[Callable[[], None]]:
     """Singular poses: there are sides of a choice that only a few of them reach."""
     for one in serial_pairs:
         yield from (partial(compare_all, one, sample, POSED) for sample in one.grid)
 
 
-def singular(
-    mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]
-) -> Iterator[tuple[SerialPair, Sample, Collection[str]]]:
+def singular(mechanism: Mechanism, serial_pairs: tuple[Pair, ...]) -> Iterator[tuple[Pair, Sample, Collection[str]]]:
     """A few singular poses, of the machine with equal links and where several singularities coincide, with the methods
     that `test_singular_poses` does not ask there.
     """
@@ -94,7 +92,7 @@ def singular(
     yield from ((one, sample, others) for one in equal for sample in few(one.grid, A_FEW))
     if serial_pairs[0].machine.is_spatial and mechanism.branches:
         asked = POSED - set(test_singular_poses.COINCIDING_METHODS)
-        bare = serial_pair(bare_machine(mechanism))
+        bare = pair_of(bare_machine(mechanism))
         for one, methods in zip((*serial_pairs[:3], bare), (POSED, asked, POSED, asked), strict=True):
             yield from ((one, sample, methods) for sample in few(coinciding(one.machine), A_FEW))
 
@@ -116,7 +114,7 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
         for mechanism in (scara, arm):
-            pairs = serial_pairs_of(mechanism)
+            pairs = pairs_of(mechanism)
             test_axis_settings.test_initialize_refuses_what_the_drives_exclude(mechanism)
             test_axis_settings.test_what_is_refused_changes_nothing(mechanism)
             test_initialise.test_limits_are_in_order(pairs, 10.0, 10.0)
@@ -130,10 +128,10 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
                     compare_all(one, sample)
         test_blocks_alone.test_a_gear_of_one_turn_changes_nothing()
         for mechanism in (scara, five_axes, *straight):
-            test_blocks_alone.test_every_block_knows_its_orientation(serial_pairs_of(mechanism))
-            test_blocks_alone.test_a_further_method_answers_or_is_impossible(serial_pairs_of(mechanism))
-            compare_all(serial_pairs_of(mechanism)[0], serial_pairs_of(mechanism)[0].regular[0])
-        directed = serial_pairs_of(five_axes)[1]
+            test_blocks_alone.test_every_block_knows_its_orientation(pairs_of(mechanism))
+            test_blocks_alone.test_a_further_method_answers_or_is_impossible(pairs_of(mechanism))
+            compare_all(pairs_of(mechanism)[0], pairs_of(mechanism)[0].regular[0])
+        directed = pairs_of(five_axes)[1]
         provoke(directed, directed.regular[0])
         test_self_test.every_statement_of_the_base(libraries[-1], scara)
         test_shared_line.every_statement()
@@ -189,38 +187,41 @@ def libraries(mechanism: Mechanism) -> list[Library]:
     return found
 
 
-def compare_all(one: SerialPair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
+def compare_all(one: Pair, sample: Sample, methods: Collection[str] = COMPARISONS.keys()) -> None:
     """Every one of these methods that the block has answers as Python at a sample."""
     for method, compare in COMPARISONS.items():
         if method in methods and method.lower() in one.controller.methods:
             compare(one, sample)
 
 
-def the_tests(mechanism: Mechanism, serial_pairs: tuple[SerialPair, ...]) -> Iterator[Callable[[], None]]:
-    """What the comparisons leave out: refusals, and the other blocks. Each is a test of its own, of these machines and
-    more.
-    """
-    yield partial(test_blocks_alone.test_the_number_of_axes, serial_pairs)
-    yield partial(test_blocks_alone.test_calling_the_block_itself_does_nothing, serial_pairs)
-    yield partial(test_initialise.test_no_method_works, serial_pairs, test_initialise.fresh)
-    yield partial(test_initialise.test_limits_are_in_order, serial_pairs, 10.0, 10.0)
-    yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, serial_pairs, 36)
-    yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, serial_pairs)
+def asked_of_every_block(pairs: tuple[Pair, ...]) -> Iterator[Callable[[], None]]:
+    """What the comparisons leave out of any machine: refusals, and the other blocks. Each is a test of its own."""
+    yield partial(test_blocks_alone.test_the_number_of_axes, pairs)
+    yield partial(test_blocks_alone.test_calling_the_block_itself_does_nothing, pairs)
+    yield partial(test_initialise.test_no_method_works, pairs, test_initialise.fresh)
+    yield partial(test_initialise.test_limits_are_in_order, pairs, 10.0, 10.0)
+    yield partial(test_initialise.test_a_matrix_of_another_size_is_refused, pairs, 36)
+    yield partial(test_initialise.test_a_configuration_that_is_too_small_is_refused, pairs)
+    yield partial(test_garbage.test_what_is_no_rotation, pairs)
+    if pairs[0].mechanism in test_configuration_blocks.CONFIGURABLE:
+        yield partial(test_configuration_blocks.test_what_is_set_is_read, pairs[1])
+    yield partial(test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside, pairs)
+    yield partial(test_initialise.test_every_parameter_is_checked, pairs[-1:])
+    yield partial(test_limits.test_every_limit_refuses_alone, pairs)
+    yield partial(test_garbage.test_garbage_in_one_number, pairs)
+
+
+def the_tests(mechanism: Mechanism, serial_pairs: tuple[Pair, ...]) -> Iterator[Callable[[], None]]:
+    """The same, and what a serial machine is asked besides."""
     yield partial(test_garbage.test_a_pose_that_cannot_be_assembled, serial_pairs)
-    yield partial(test_garbage.test_what_is_no_rotation, serial_pairs)
     if mechanism.constraints:
         yield test_initialise.test_the_coupling_is_given_once
-    if mechanism in test_configuration_blocks.CONFIGURABLE:
-        yield partial(test_configuration_blocks.test_what_is_set_is_read, serial_pairs[1])
     yield partial(test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed, serial_pairs[:3])
     yield partial(test_singular_poses.test_a_point_beside_the_first_axis_of_a_stretched_arm, serial_pairs[:3])
     yield partial(test_singular_poses.test_a_point_far_off_the_flange_is_out_of_reach, serial_pairs[:3])
     if mechanism.name in test_singular_poses.OF_TWO_LINKS:
         yield partial(test_singular_poses.test_a_point_inside_the_shortest_reach, mechanism.name)
-    yield partial(test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside, serial_pairs)
-    yield partial(test_initialise.test_every_parameter_is_checked, serial_pairs[-1:])
-    yield partial(test_limits.test_every_limit_refuses_alone, serial_pairs)
-    yield partial(test_garbage.test_garbage_in_one_number, serial_pairs)
+    yield from asked_of_every_block(serial_pairs)
 
 
 def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:

@@ -23,7 +23,6 @@ from tests.text.limits import has_limits
 from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import NO_TURN, Command, Rows, Sample, tilted
-from tests.text.serial_pairs import SerialPair
 
 GARBAGE = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.1e9)
 NO_ROTATIONS: tuple[Rows, ...] = (
@@ -167,7 +166,7 @@ def test_what_is_no_rotation(pairs: tuple[Pair, ...]) -> None:
                     assert one.controller.image_with_orientation(wrong)[0] == BAD_INPUT
 
 
-def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_pose_that_cannot_be_assembled(serial_pairs: tuple[Pair, ...]) -> None:
     """A joint beyond what the closure allows: a negative radius, an angle past the vertical."""
     for one in serial_pairs[:5]:
         for index, joint in enumerate(one.mechanism.joints):
@@ -229,7 +228,7 @@ ROUNDING = 1e-9
 INSIDE = 0.02
 
 
-def offered(one: SerialPair) -> bool:
+def offered(one: Pair) -> bool:
     """Whether the block has the method that reads a commanded rotation."""
     return "getflangeorientationimagewithori" in one.controller.methods
 
@@ -264,7 +263,7 @@ def test_beyond_that_it_is_refused_with_the_same_reason(pairs: tuple[Pair, ...])
             assert one.controller.image_with_orientation(rows(matrix))[0] == BAD_INPUT
 
 
-def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pairs: tuple[Pair, ...]) -> None:
     rng = np.random.default_rng(17)
     one = serial_pairs[0]
     for sample in one.regular[:3] if offered(one) else ():
@@ -277,9 +276,7 @@ def test_the_image_is_the_rotation_that_the_inverse_gives_the_flange(serial_pair
                 _agree(one, sample, position, matrix, own)
 
 
-def _agree(
-    one: SerialPair, sample: Sample, position: tuple[float, ...], matrix: np.ndarray, own: tuple[int, ...]
-) -> None:
+def _agree(one: Pair, sample: Sample, position: tuple[float, ...], matrix: np.ndarray, own: tuple[int, ...]) -> None:
     status, image = one.controller.image_with_orientation(rows(matrix))
     assert status == OK
     freedom, zero, base_axis, _ = image

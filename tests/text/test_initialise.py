@@ -17,8 +17,7 @@ from tests.catalogue.machines import LENGTHS
 from tests.harness.library import Library, StError
 from tests.text.any_method import Call, call_of, methods_of
 from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked
-from tests.text.pairs import Pair
-from tests.text.serial_pairs import MECHANISMS, SerialPair, serial_pairs_of
+from tests.text.pairs import MECHANISMS, Pair, pairs_of
 from tests.text.test_garbage import MOTIONS
 from tests.text.units import compiled, compiled_text, file_of, text_of
 
@@ -90,7 +89,7 @@ def test_limits_are_in_order(pairs: tuple[Pair, ...], lower: float, upper: float
 def test_the_coupling_is_given_once() -> None:
     """The one constraint between parameters in the catalogue."""
     (mechanism,) = (m for m in MECHANISMS if m.constraints)
-    machine = serial_pairs_of(mechanism)[0]
+    machine = pairs_of(mechanism)[0]
     given = {**machine.robot.parameters, "pitch_zc": 20.0}
     assert Controller(machine.library, mechanism).initialise(given) == OK
     assert Controller(machine.library, mechanism).initialise(given | {"gear_coupling": 1e-9}) == NOT_INITIALIZED
@@ -139,7 +138,7 @@ def without_index_checks(mechanism: Mechanism) -> Library:
     return compiled_text(file_of(mechanism), text, max_config_data=size - 2)
 
 
-def test_inputs_have_no_influence_after_initialize(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_inputs_have_no_influence_after_initialize(serial_pairs: tuple[Pair, ...]) -> None:
     """No number, nor the other direction, nor the limits."""
     for one in serial_pairs[-3:]:
         controller = Controller(one.library, one.mechanism)
@@ -196,12 +195,12 @@ NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
 """What methods without a status answer."""
 
 
-def fresh(one: SerialPair) -> Controller:
+def fresh(one: Pair) -> Controller:
     """A block that was never initialised."""
     return Controller(one.library, one.mechanism)
 
 
-def refused(one: SerialPair) -> Controller:
+def refused(one: Pair) -> Controller:
     """A block that was initialised, and then refused other inputs."""
     controller = fresh(one)
     assert controller.initialise(one.robot.parameters) == OK
@@ -210,7 +209,7 @@ def refused(one: SerialPair) -> Controller:
 
 
 @pytest.mark.parametrize("made", [fresh, refused])
-def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], Controller]) -> None:
+def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[Pair], Controller]) -> None:
     one = pairs[-1]
     controller = made(one)
     for method in methods_of(controller):
@@ -227,5 +226,5 @@ def test_no_method_works(pairs: tuple[Pair, ...], made: Callable[[SerialPair], C
             assert NEUTRAL[method](result, before, after), f"{method} {result} {after}"
 
 
-def working(one: SerialPair, call: Call, method: str) -> tuple[Any, State]:
+def working(one: Pair, call: Call, method: str) -> tuple[Any, State]:
     return call_of(one, one.controller, method, one.regular[0]).run()

@@ -18,8 +18,8 @@ from tests.text.comparisons import COMPARISONS
 from tests.text.comparisons.offsets import point_at
 from tests.text.comparisons.poses import assert_same_pose
 from tests.text.controller import OK, UNREACHABLE, asked, assert_same
+from tests.text.pairs import Pair, pair_of
 from tests.text.samples import NO_TURN, Sample, coinciding, near
-from tests.text.serial_pairs import SerialPair, serial_pair
 
 OF_TWO_LINKS = ("Kin_Pos_RRR", "Softkin_Palletizer")
 """Arms whose required lengths are two links."""
@@ -36,7 +36,7 @@ EVERY = 5
 
 @pytest.mark.slow
 @pytest.mark.parametrize("label", MACHINES)
-def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+def test_quarter_turns(serial_pairs: tuple[Pair, ...], label: str) -> None:
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     assert len(one.grid) >= 9
     for sample in one.grid if label == "equal" else one.grid[::3]:
@@ -47,7 +47,7 @@ def test_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None
 @pytest.mark.slow("ThreeParallel")
 @pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
-def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+def test_near_quarter_turns(serial_pairs: tuple[Pair, ...], label: str) -> None:
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in near(one.grid[::EVERY]):
         for method in offered(one, METHODS):
@@ -56,7 +56,7 @@ def test_near_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) ->
 
 @pytest.mark.long("Scara4")
 @pytest.mark.parametrize("label", MACHINES)
-def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair, ...], label: str) -> None:
+def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[Pair, ...], label: str) -> None:
     (one,) = (t for t in serial_pairs if t.machine.label == label)
     for sample in (*one.grid[::EVERY], *near(one.grid[::EVERY])):
         for method in offered(one, OFFSET_METHODS):
@@ -65,23 +65,23 @@ def test_a_point_off_the_flange_at_quarter_turns(serial_pairs: tuple[SerialPair,
 
 @pytest.mark.slow("ThreeParallel")
 @pytest.mark.long("Pos_RRR")
-def test_singularities_that_coincide(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_singularities_that_coincide(serial_pairs: tuple[Pair, ...]) -> None:
     """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
     if not serial_pairs[1].machine.is_spatial or not serial_pairs[1].robot.BRANCHES:
         return
-    for one in (serial_pairs[1], serial_pair(bare_machine(serial_pairs[1].mechanism))):
+    for one in (serial_pairs[1], pair_of(bare_machine(serial_pairs[1].mechanism))):
         for sample in coinciding(one.machine):
             for method in COINCIDING_METHODS:
                 COMPARISONS[method](one, sample)
 
 
-def offered(one: SerialPair, methods: tuple[str, ...]) -> list[str]:
+def offered(one: Pair, methods: tuple[str, ...]) -> list[str]:
     """Those that the block has."""
     return [method for method in methods if method.lower() in one.controller.methods]
 
 
 @pytest.mark.long
-def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Pair, ...]) -> None:
     """The effective link of the offset interface is then too short to have a direction."""
     for one in serial_pairs:
         if "cartesiantoaxes_offset" not in one.controller.methods:
@@ -92,7 +92,7 @@ def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(serial_pairs: tuple[Seria
 
 
 @pytest.mark.slow("Palletizer", "Pos_RRR")
-def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[Pair, ...]) -> None:
     """Branches meet at two edges of the workspace at once."""
     for one in serial_pairs:
         if "cartesiantoaxes_offset" not in one.controller.methods:
@@ -103,7 +103,7 @@ def test_a_point_beside_the_first_axis_of_a_stretched_arm(serial_pairs: tuple[Se
                 COMPARISONS["CartesianToAxes_Offset"](one, replace(sample, axes=tuple(values), offset=tuple(offset)))
 
 
-def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_point_far_off_the_flange_is_out_of_reach(serial_pairs: tuple[Pair, ...]) -> None:
     """In one direction or another: then the place is nearer to an axis than the arm passes it."""
     for one in serial_pairs:
         if "cartesiantoaxes_offset" not in one.controller.methods:
@@ -128,7 +128,7 @@ def test_a_point_inside_the_shortest_reach(name: str) -> None:
     """
     mechanism = named(name)
     links = [p.name for p in mechanism.parameters if p.role is Role.LENGTH]
-    one = serial_pair(machine(mechanism, "two links", {n: 250.0 + k for k, n in enumerate(links)}))
+    one = pair_of(machine(mechanism, "two links", {n: 250.0 + k for k, n in enumerate(links)}))
     arms = product((0.0,), (0.0, 180.0), (0.0, 180.0))
     flanges = [one.robot.forward((*arm, *one.machine.closure.offsets[3:]))[0].position for arm in arms]
     x, y, z = np.mean(flanges, axis=0).tolist()
@@ -141,7 +141,7 @@ def test_a_point_inside_the_shortest_reach(name: str) -> None:
         )
 
 
-def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]:
+def fixed_points(one: Pair, sample: Sample) -> Iterator[tuple[float, ...]]:
     """For every rotary axis that turns the flange, the point of the flange about which it does."""
     jacobian, rotation = one.robot.jacobian(sample.axes), one.robot.orientation(sample.axes)
     for index, joint in enumerate(one.mechanism.joints):
@@ -154,7 +154,7 @@ def fixed_points(one: SerialPair, sample: Sample) -> Iterator[tuple[float, ...]]
                 yield tuple(on_the_axis(one.machine, values, index)[0].tolist())
 
 
-def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[Pair, ...]) -> None:
     """A point straight ahead, and a reference that is as far from one solution as from its mirror image."""
     one = serial_pairs[0]
     if not one.robot.BRANCHES or one.machine.is_spatial:
@@ -170,7 +170,7 @@ def test_a_tie_goes_to_the_first_branch(serial_pairs: tuple[SerialPair, ...]) ->
         assert solve(first, nothing) == solve(opened, nothing) != solve((2, *first[1:]), nothing)
 
 
-def test_where_branches_coincide_the_first_answers(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_where_branches_coincide_the_first_answers(serial_pairs: tuple[Pair, ...]) -> None:
     """They are equally far from any reference."""
     one = serial_pairs[1]
     if not one.robot.BRANCHES:
@@ -194,24 +194,24 @@ def test_where_branches_coincide_the_first_answers(serial_pairs: tuple[SerialPai
     assert compared
 
 
-def nearly_singular(one: SerialPair, sample: Sample) -> int:
+def nearly_singular(one: Pair, sample: Sample) -> int:
     """How many margins nearly vanish."""
     return sum(abs(margin) < NEARLY for margin in one.robot.singularity(sample.axes).margins.values())
 
 
-def singular_samples(one: SerialPair) -> tuple[Sample, ...]:
+def singular_samples(one: Pair) -> tuple[Sample, ...]:
     """Right angles; of an arm in space, whose elbow stretches at any angle, what is singular by its description too."""
     has_loci = one.machine.is_spatial and one.robot.BRANCHES > 0
     return (*one.grid, *coinciding(one.machine)) if has_loci else one.grid
 
 
-def branches_of(one: SerialPair, sample: Sample) -> tuple[int, ...]:
+def branches_of(one: Pair, sample: Sample) -> tuple[int, ...]:
     """The branch bytes that forward kinematics writes."""
     data: tuple[int, ...] = one.controller.forward(sample.axes)[1][2]
     return data[: one.robot.BRANCHES]
 
 
-def test_the_grid_has_singular_poses(serial_pairs: tuple[SerialPair, ...]) -> None:
+def test_the_grid_has_singular_poses(serial_pairs: tuple[Pair, ...]) -> None:
     """A mechanism with margins is singular somewhere on the grid, and not everywhere."""
     (equal,) = (t for t in serial_pairs if t.machine.label == "equal")
     found = [equal.controller.is_singular(sample.axes) for sample in singular_samples(equal)]
@@ -232,7 +232,7 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
     rng = np.random.default_rng(11)
     for one, corner in places(paired):
         given = {**one.given, "check_limits": 0.0}
-        pair = serial_pair(replace(one, robot=one.changed(check_limits=False), given=given))
+        pair = pair_of(replace(one, robot=one.changed(check_limits=False), given=given))
         axes = poses(one, corner)
         for row in axes[rng.choice(len(axes), SOME)].tolist():
             status, answer = pair.controller.forward(row)
@@ -254,7 +254,7 @@ def test_no_pose_is_lost(paired: Mechanism) -> None:
 def test_a_shoulder_and_an_elbow_at_once() -> None:
     """The shoulder's root is rounding, 5.4e-9 too long for the elbow that is stretched."""
     (mechanism,) = (m for m in PAIRED if m.name == "Kin_ArticulatedRobot_6DOF")
-    pair = serial_pair(machine(mechanism, "shifted", KR6_D3))
+    pair = pair_of(machine(mechanism, "shifted", KR6_D3))
     axes = (110.0, 1.6345249003522546, 85.23635830927383, -70.0, -30.0, 100.0)
     _, (position, rotation, own) = pair.controller.forward(axes)
     for configuration in (own, (0,) * len(own)):

@@ -15,7 +15,7 @@ from tests.text.breakage import FAULTS, MECHANISM, REFUSED, WRONG, texts
 from tests.text.comparisons import COMPARISONS
 from tests.text.contract.blocks import FILES
 from tests.text.controller import OK, Controller
-from tests.text.serial_pairs import SerialPair, serial_pairs_of
+from tests.text.pairs import Pair, pairs_of
 
 
 @pytest.mark.parametrize("file", FILES)
@@ -171,12 +171,12 @@ def test_a_declaration_it_cannot_read_is_refused(line: str) -> None:
         declaration_of(f"FUNCTION F : BOOL\nVAR\n{line}\nEND_VAR")
 
 
-def with_text_of(library: Library, label: str) -> SerialPair:
+def with_text_of(library: Library, label: str) -> Pair:
     """A machine, with another text for its block."""
-    (one,) = (t for t in serial_pairs_of(MECHANISM) if t.machine.label == label)
+    (one,) = (t for t in pairs_of(MECHANISM) if t.machine.label == label)
     controller = Controller(library, MECHANISM)
     assert controller.initialise(one.robot.parameters) == OK
-    return SerialPair(one.machine, controller)
+    return Pair(one.machine, controller)
 
 
 def compare(library: Library, *methods: str) -> None:

@@ -12,12 +12,12 @@ import pytest
 from tests.catalogue.platform_poses import (
     Array,
     are_same,
+    beside_home,
+    every_pose,
     hexapod,
-    legs_of,
-    lengths_of,
+    missed,
     nominal_of,
     poses_in_a_plane,
-    poses_of_a_hexapod,
 )
 from tests.javascript.modules import part_of
 from tests.javascript.node import run
@@ -42,13 +42,12 @@ def searched(name: str, parameters: Mapping[str, float], axes: Array) -> dict[st
 @pytest.mark.parametrize(("seed", "count"), [(0, 12), (2, 8), (5, 12)])
 def test_a_hexapod(seed: int, count: int) -> None:
     """The legs have their lengths, and random starts find no other pose."""
-    given = hexapod(seed)
-    axes = lengths_of(given)
-    found = searched("Kin_Hexapod", given, axes)
+    machine = hexapod(seed)
+    axes = beside_home(machine)
+    found = searched("Kin_Hexapod", machine.given, axes)
     rows = np.array([[*p["frame"]["position"], *np.ravel(p["frame"]["rotation"])] for p in found["poses"]])
-    legs = np.linalg.norm(legs_of(given, rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)), axis=2)
-    assert np.allclose(legs, axes, rtol=0, atol=1e-6)
-    assert len(rows) == count and are_same(rows, poses_of_a_hexapod(given, axes), 1e-3)
+    assert missed(machine, axes, rows) < 1e-6
+    assert len(rows) == count and are_same(rows, every_pose(machine, axes), 1e-3)
     assert {p["isOther"] for p in found["poses"]} == {True, False}
     assert min(p["count"] for p in found["poses"]) >= 4 and found["starts"] >= 1000
 

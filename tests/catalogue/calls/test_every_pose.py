@@ -7,12 +7,12 @@ from softkin import Coupled, Frame
 
 from tests.catalogue.platform_poses import (
     are_same,
+    beside_home,
+    every_pose,
     hexapod,
-    legs_of,
-    lengths_of,
+    missed,
     nominal_of,
     poses_in_a_plane,
-    poses_of_a_hexapod,
 )
 from tests.mechanisms import named
 
@@ -31,14 +31,13 @@ def delta() -> softkin.DeltaP3CType3:
 @pytest.mark.parametrize(("seed", "count"), [(0, 12), (2, 8), (5, 12)])
 def test_a_hexapod(seed: int, count: int) -> None:
     """The legs have their lengths, and random starts find no other pose; both assembly modes are among them."""
-    given = hexapod(seed)
-    robot, lengths = softkin.Hexapod(**given), lengths_of(given)
-    found = robot.forward_all(lengths)
+    machine = hexapod(seed)
+    axes = beside_home(machine)
+    found = machine.robot.forward_all(axes)
     rows = np.array([[*one.frame.position, *np.ravel(one.frame.rotation)] for one in found])
-    legs = np.linalg.norm(legs_of(given, rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)), axis=2)
-    assert np.allclose(legs, lengths, rtol=0.0, atol=1e-9)
-    assert len(found) == count and are_same(rows, poses_of_a_hexapod(given, lengths), 1e-3)
-    assert np.allclose(found[0].frame.matrix, robot.forward(lengths)[0].matrix, rtol=0.0, atol=1e-9)
+    assert missed(machine, axes, rows) < 1e-9
+    assert len(found) == count and are_same(rows, every_pose(machine, axes), 1e-3)
+    assert np.allclose(found[0].frame.matrix, machine.robot.forward(axes)[0].matrix, rtol=0.0, atol=1e-9)
     modes = [one.is_other for one in found]
     assert modes == sorted(modes) and set(modes) == {False, True}
 

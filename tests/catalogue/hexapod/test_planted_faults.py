@@ -1,7 +1,7 @@
 """The tests of this folder can fail: their comparisons notice a unit, or a program, with one fault."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,63 +12,54 @@ from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
 from tests.catalogue.hexapod.machines import Machine, bounded, found_from, machines, search_changed, without_mode
 from tests.harness.faults import StFault
-from tests.harness.library import StError
+from tests.harness.library import StError, compile_st
+from tests.text.breakage import Break, texts
 from tests.text.hexapod.blocks import made
 from tests.text.hexapod.test_structured_text import compare_some, in_the_other_mode
-from tests.text.units import compiled_text, file_of, text_of
 
 pytestmark = pytest.mark.slow
 
-_SEARCH, _INVERSE, _JACOBIAN = "PRIVATE FindPlatform", "PROTECTED SolveBranch", "PROTECTED FindJacobian"
-
-
-@dataclass(frozen=True)
-class Fault:
-    """A text in a method, and the wrong text that replaces it."""
-
-    method: str
-    right: str
-    wrong: str
+_SEARCH, _INVERSE, _JACOBIAN, _FORWARD, _MARGINS = (
+    f"METHOD {name}"
+    for name in (
+        "PRIVATE FindPlatform",
+        "PROTECTED SolveBranch",
+        "PROTECTED FindJacobian",
+        "PROTECTED FindPose",
+        "PROTECTED FindMargins",
+    )
+)
 
 
 WRONG = {
-    "a moment with another arm": Fault(_SEARCH, "along3.dZ*arm3Y", "along3.dZ*arm2Y"),
-    "a joint of another leg": Fault(_SEARCH, "arm4X + x - base4X", "arm4X + x - base5X"),
-    "an entry of the rotation": Fault(_SEARCH, "platform.rot[2, 3] := ", "platform.rot[2, 3] := 1.0E-9 + "),
-    "a rotation on the other side": Fault(_SEARCH, "beginR12*turned11", "beginR21*turned11"),
-    "an offset": Fault(_SEARCH, "l5 := a.a4 - axes[4].offset", "l5 := a.a4"),
-    "too few passes": Fault(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
-    "a tolerance": Fault(_SEARCH, "(fit) AND (fitted)", "(fit) OR (size < 0.05)"),
-    "a pass that changes nothing": Fault(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),
-    "an output that is never written": Fault(_SEARCH, "platform.rot[3, 1] := ", "startArm1X := "),
-    "the other assembly mode": Fault(_SEARCH, "determinant > 0.0", "determinant < 0.0"),
-    "two outputs exchanged": Fault("PROTECTED FindPose", "v.dX := platform.v.dX;\nv.dY := platform.v.dY;",
+    "a moment with another arm": Break(_SEARCH, "along3.dZ*arm3Y", "along3.dZ*arm2Y"),
+    "a joint of another leg": Break(_SEARCH, "arm4X + x - base4X", "arm4X + x - base5X"),
+    "an entry of the rotation": Break(_SEARCH, "platform.rot[2, 3] := ", "platform.rot[2, 3] := 1.0E-9 + "),
+    "a rotation on the other side": Break(_SEARCH, "beginR12*turned11", "beginR21*turned11"),
+    "an offset": Break(_SEARCH, "l5 := a.a4 - axes[4].offset", "l5 := a.a4"),
+    "too few passes": Break(_SEARCH, "FOR iteration := 1 TO 20 DO", "FOR iteration := 1 TO 3 DO"),
+    "a tolerance": Break(_SEARCH, "(fit) AND (fitted)", "(fit) OR (size < 0.05)"),
+    "a pass that changes nothing": Break(_SEARCH, "x := x + oneByStretch*xRate", "x := x"),
+    "an output that is never written": Break(_SEARCH, "platform.rot[3, 1] := ", "startArm1X := "),
+    "the other assembly mode": Break(_SEARCH, "determinant > 0.0", "determinant < 0.0"),
+    "two outputs exchanged": Break(_FORWARD, "v.dX := platform.v.dX;\nv.dY := platform.v.dY;",
         "v.dX := platform.v.dY;\nv.dY := platform.v.dX;"),
-    "another start": Fault("PROTECTED FindPose", "beginX := home.v.dX", "beginX := home.v.dX + 1.0E6"),
-    "a refusal that is not handed on": Fault("PROTECTED FindPose", ":= outcome;",
+    "another start": Break(_FORWARD, "beginX := home.v.dX", "beginX := home.v.dX + 1.0E6"),
+    "a refusal that is not handed on": Break(_FORWARD, ":= outcome;",
         ":= Softkin_Names.NoError;"),
-    "a column of the Jacobian": Fault(_JACOBIAN, "coefficients[2, 4] := platform.moment2.dX",
+    "a column of the Jacobian": Break(_JACOBIAN, "coefficients[2, 4] := platform.moment2.dX",
         "coefficients[2, 4] := platform.moment3.dX"),
-    "a Jacobian per platform radius": Fault(_JACOBIAN, "*oneByPlatformRadius", ""),
-    "a margin": Fault("PROTECTED FindMargins", "aMargins[0] := ", "aMargins[0] := 1.0E-4*"),
-    "a length": Fault(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
-    "a cone": Fault(_INVERSE, "alongBaseCone1 >= l1*leastCosBase", "alongBaseCone1 >= l1*0.999999"),
+    "a Jacobian per platform radius": Break(_JACOBIAN, "*oneByPlatformRadius", ""),
+    "a margin": Break(_MARGINS, "aMargins[0] := ", "aMargins[0] := 1.0E-4*"),
+    "a length": Break(_INVERSE, "span2Y*span2Y", "span2X*span2Y"),
+    "a cone": Break(_INVERSE, "alongBaseCone1 >= l1*leastCosBase", "alongBaseCone1 >= l1*0.999999"),
 }  # fmt: skip
-
-
-def text_with(fault: Fault) -> str:
-    """The unit with a fault in it."""
-    text = text_of(MECHANISM)
-    start = text.index(f"METHOD {fault.method} ")
-    end = text.index("END_METHOD", start)
-    assert fault.right in text[start:end], fault
-    return text[:start] + text[start:end].replace(fault.right, fault.wrong, 1) + text[end:]
 
 
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_text_is_noticed(name: str) -> None:
     """By the comparison with Python at ordinary poses of a machine without symmetry, and where nothing can be found."""
-    machine, library = machines()["asymmetric"], compiled_text(file_of(MECHANISM), text_with(WRONG[name]))
+    machine, library = machines()["asymmetric"], compile_st(texts(WRONG[name], MECHANISM))
     block = made(machine, library)
     with pytest.raises((AssertionError, StFault)):
         compare_some(machine, block)
@@ -79,7 +70,7 @@ def test_a_wrong_text_is_noticed(name: str) -> None:
 def test_a_memory_is_refused() -> None:
     """A search that keeps where it ended for the next call cannot even be compiled."""
     with pytest.raises(StError, match="only Initialize and AxisSettings may write"):
-        compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + oneByStretch*xRate;", "home.v.dX := x;")))
+        compile_st(texts(Break(_SEARCH, "x := x + oneByStretch*xRate;", "home.v.dX := x;"), MECHANISM))
 
 
 def in_reach(program: Program, machine: Machine) -> bool:

@@ -6,10 +6,10 @@ A test runs for every method that stands in the emitted text, and looks it up he
 from collections.abc import Callable
 
 from tests.text.comparisons import axes, configurations, initialization, offsets, orientations, poses, velocities
+from tests.text.pairs import Pair
 from tests.text.samples import Sample
-from tests.text.serial_pairs import SerialPair
 
-Comparison = Callable[[SerialPair, Sample], None]
+Comparison = Callable[[Pair, Sample], None]
 
 COMPARISONS: dict[str, Comparison] = {
     "Initialize": initialization.initialize,

@@ -5,12 +5,12 @@ import numpy as np
 from derive.description.mechanism import Joint, Kind
 from tests.text.comparisons.poses import assert_same_pose, solved
 from tests.text.controller import NOT_INITIALIZED, OK, Controller, asked, assert_same, is_close
+from tests.text.pairs import Pair
 from tests.text.samples import Sample
-from tests.text.serial_pairs import SerialPair
 from tests.text.settings import Range, own_limits, together
 
 
-def axis_properties(pair: SerialPair, sample: Sample) -> None:
+def axis_properties(pair: Pair, sample: Sample) -> None:
     """Types as declared, and the limits that the block keeps; beyond the axes a free linear one."""
     for index in (*range(6), 255, 2**32 - 1):
         found = pair.controller.axis_properties(index)
@@ -20,13 +20,13 @@ def axis_properties(pair: SerialPair, sample: Sample) -> None:
             assert found == ("Linear", True, 0.0, 0.0)
 
 
-def _properties(pair: SerialPair, joint: Joint) -> tuple[str, bool, float, float]:
+def _properties(pair: Pair, joint: Joint) -> tuple[str, bool, float, float]:
     kind = "Rotary" if joint.kind is Kind.ROTARY else "Linear"
     own = own_limits(pair.mechanism, pair.robot.parameters, joint)
     return (kind, True, 0.0, 0.0) if own is None else (kind, False, *own)
 
 
-def axis_settings(pair: SerialPair, sample: Sample) -> None:
+def axis_settings(pair: Pair, sample: Sample) -> None:
     """Limits of all drives around a pose narrow those of the machine: the machine with both answers
     the same in Python.
     """

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
+from tests.text.pairs import Pair
 from tests.text.samples import Bytes, Sample
-from tests.text.serial_pairs import SerialPair
 
 BYTES = 32
 """The bytes of CONFIGDATA in the stand-in for the library."""
@@ -20,17 +20,17 @@ def signed(byte: int) -> int:
     return byte - 256 if byte > 127 else byte
 
 
-def configuration_size(pair: SerialPair, sample: Sample) -> None:
+def configuration_size(pair: Pair, sample: Sample) -> None:
     assert pair.controller.block.call("GetConfigurationDataSize") == len(pair.robot.CONFIGURATION) == len(sample.data)
 
 
-def default_configuration(pair: SerialPair, sample: Sample) -> None:
+def default_configuration(pair: Pair, sample: Sample) -> None:
     found = pair.controller.configuration(sample.data)
     assert pair.controller.block.call("GetDefaultConfigurationData", cd=found) is True
     assert tuple(found.abyData) == padded(pair.robot.DEFAULT_CONFIGURATION)
 
 
-def connectible(pair: SerialPair, sample: Sample) -> None:
+def connectible(pair: Pair, sample: Sample) -> None:
     """By the branch bytes alone."""
     branches = pair.robot.BRANCHES
     others = sample.data[:branches] + tuple(255 - byte for byte in sample.data[branches:])
@@ -40,7 +40,7 @@ def connectible(pair: SerialPair, sample: Sample) -> None:
         assert pair.controller.block.call("CPConnectible", **given) is expected
 
 
-def automatic_periods(pair: SerialPair, sample: Sample) -> None:
+def automatic_periods(pair: Pair, sample: Sample) -> None:
     """The period bytes are 0, and all others are copied."""
     source, found = pair.controller.configuration(sample.data), pair.controller.configuration(())
     expected = list(source.abyData)
@@ -49,7 +49,7 @@ def automatic_periods(pair: SerialPair, sample: Sample) -> None:
     assert found.abyData == expected
 
 
-def singular_configuration(pair: SerialPair, sample: Sample) -> None:
+def singular_configuration(pair: Pair, sample: Sample) -> None:
     """IsConfigSingular tells where a branch byte says that branches coincide."""
     branches = pair.robot.BRANCHES
     for byte in range(5):
@@ -58,7 +58,7 @@ def singular_configuration(pair: SerialPair, sample: Sample) -> None:
         assert pair.controller.block.call("IsConfigSingular", cd=given) is (byte == 3 and branches > 0)
 
 
-def periods(pair: SerialPair, sample: Sample) -> None:
+def periods(pair: Pair, sample: Sample) -> None:
     """By axis, signed; 0 for an axis without a period."""
     found = [99] * 6
     pair.controller.block.call("GetPeriods", cd=pair.controller.configuration(sample.data), aPeriods=found)

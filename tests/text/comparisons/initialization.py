@@ -1,11 +1,11 @@
 """Whether a block is initialised, why it is not, and its name."""
 
 from tests.text.controller import NOT_INITIALIZED, OK, Controller, assert_same
+from tests.text.pairs import Pair
 from tests.text.samples import Sample
-from tests.text.serial_pairs import SerialPair
 
 
-def initialize(pair: SerialPair, sample: Sample) -> None:
+def initialize(pair: Pair, sample: Sample) -> None:
     """Fresh, refused without parameters or with the last one, and again accepted."""
     one = Controller(pair.library, pair.mechanism)
     assert not one.block.call("IsInitialized")
@@ -18,10 +18,10 @@ def initialize(pair: SerialPair, sample: Sample) -> None:
     assert_same(one.forward(sample.axes), pair.controller.forward(sample.axes), pair, sample)
 
 
-def why_initialize(pair: SerialPair, sample: Sample) -> None:
+def why_initialize(pair: Pair, sample: Sample) -> None:
     assert pair.controller.block.call("InitializeReason") == ""
 
 
-def name(pair: SerialPair, sample: Sample) -> None:
+def name(pair: Pair, sample: Sample) -> None:
     expected = pair.mechanism.title or pair.mechanism.block_name
     assert pair.controller.block.call("GetKinematicsName") == expected

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 from tests.text.comparisons.configurations import padded
 from tests.text.controller import OK, asked, assert_same
+from tests.text.pairs import Pair
 from tests.text.samples import Sample
-from tests.text.serial_pairs import SerialPair
 
 
-def configuration_offset(pair: SerialPair, sample: Sample) -> None:
+def configuration_offset(pair: Pair, sample: Sample) -> None:
     """All automatic where there is no pose: the method has no status."""
     for offset in ((0.0, 0.0, 0.0), sample.offset):
         _, found = asked(pair.robot.configuration_offset, sample.axes, offset)
@@ -16,7 +16,7 @@ def configuration_offset(pair: SerialPair, sample: Sample) -> None:
         assert pair.controller.configuration_offset(sample.axes, offset) == expected, f"{pair} {sample}"
 
 
-def inverse_offset(pair: SerialPair, sample: Sample) -> None:
+def inverse_offset(pair: Pair, sample: Sample) -> None:
     """CartesianToAxes_Offset answers as Python: branches named and open, references near and far, and out of reach."""
     robot, far = pair.robot, sample.reference
     if asked(robot.forward, sample.axes)[0] != OK:
@@ -39,7 +39,7 @@ def inverse_offset(pair: SerialPair, sample: Sample) -> None:
             assert_same(found, (status, expected), pair, point, offset, configuration, reference)
 
 
-def point_at(pair: SerialPair, sample: Sample, offset: Iterable[float]) -> tuple[float, ...]:
+def point_at(pair: Pair, sample: Sample, offset: Iterable[float]) -> tuple[float, ...]:
     """Where a point of the flange is."""
     (position, rotation), _ = pair.robot.forward(sample.axes)
     arm = tuple(offset)

@@ -2,16 +2,16 @@
 
 from derive.description.mechanism import Turning
 from tests.text.controller import OK, UNREACHABLE, asked, assert_same
+from tests.text.pairs import Pair
 from tests.text.samples import HALF_TURN, NO_TURN, Sample
-from tests.text.serial_pairs import SerialPair
 
 
-def orientation(pair: SerialPair, sample: Sample) -> None:
+def orientation(pair: Pair, sample: Sample) -> None:
     expected = asked(pair.robot.orientation, sample.axes)
     assert_same(pair.controller.orientation(sample.axes), expected, pair, sample)
 
 
-def image(pair: SerialPair, sample: Sample) -> None:
+def image(pair: Pair, sample: Sample) -> None:
     """The methods without a commanded rotation write the orientations that Python gives."""
     for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
         if method.lower() in pair.controller.methods:
@@ -19,7 +19,7 @@ def image(pair: SerialPair, sample: Sample) -> None:
             assert_same(pair.controller.image(method), (OK, tuple(expected)), pair)
 
 
-def image_with_orientation(pair: SerialPair, sample: Sample) -> None:
+def image_with_orientation(pair: Pair, sample: Sample) -> None:
     """The projection, as a space of one orientation; refused where the tool points exactly the opposite way.
 
     A machine that follows the whole rotation, or the tool's direction, gives the rotation itself.

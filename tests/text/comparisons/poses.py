@@ -7,9 +7,9 @@ from derive.equations.chain_splits import is_spatial
 from tests.catalogue.machines import Machine
 from tests.text.comparisons.configurations import padded
 from tests.text.controller import OK, Answer, asked, assert_same, is_close
+from tests.text.pairs import Pair
 from tests.text.reasons import compare_reason
 from tests.text.samples import Command, Sample, commands
-from tests.text.serial_pairs import SerialPair
 
 ROUNDING = 1e-11
 ANSWERED = 3
@@ -18,14 +18,14 @@ NEARLY_FREE = 1e-5
 """Where a margin is smaller an angle has lost digits: poses are compared, and angles by rounding over the margin."""
 
 
-def forward(pair: SerialPair, sample: Sample) -> None:
+def forward(pair: Pair, sample: Sample) -> None:
     """AxesToCartesian writes the pose and the configuration that Python gives, or refuses with the same status."""
     status, answer = asked(pair.robot.forward, sample.axes)
     expected = (*answer[0], padded(answer[1])) if status == OK else None
     assert_same(pair.controller.forward(sample.axes), (status, expected), pair, sample)
 
 
-def inverse(pair: SerialPair, sample: Sample) -> None:
+def inverse(pair: Pair, sample: Sample) -> None:
     """CartesianToAxes gives the axis values of Python; where branches coincide, axis values of the same pose."""
     margin = _least_margin(pair, sample) if _is_spatial(pair) else 1.0
     for command, (status, answer) in solved(pair.machine, sample):
@@ -39,7 +39,7 @@ def inverse(pair: SerialPair, sample: Sample) -> None:
             assert_same(found, (status, expected), pair, command)
 
 
-def _least_margin(pair: SerialPair, sample: Sample) -> float:
+def _least_margin(pair: Pair, sample: Sample) -> float:
     """The least singularity margin in size; 0 where branches coincide, 1 where the sample has no pose."""
     branches = own_bytes(pair, sample)
     if 3 in branches or not branches:
@@ -47,13 +47,13 @@ def _least_margin(pair: SerialPair, sample: Sample) -> float:
     return min(map(abs, pair.robot.singularity(sample.axes).margins.values()), default=1.0)
 
 
-def _are_near(pair: SerialPair, found: Answer, expected: Answer, within: float) -> bool:
+def _are_near(pair: Pair, found: Answer, expected: Answer, within: float) -> bool:
     """Whether axes differ by no more than so many radians and sizes of the machine."""
     units = [math.degrees(1.0) if j.is_angle else pair.machine.reach for j in pair.mechanism.joints]
     return all(abs(a - b) <= within * unit for a, b, unit in zip(found[1], expected[1], units, strict=False))
 
 
-def _is_spatial(pair: SerialPair) -> bool:
+def _is_spatial(pair: Pair) -> bool:
     chain = pair.machine.mechanism.chain
     return chain is not None and is_spatial(chain)
 
@@ -69,13 +69,13 @@ def solved(machine: Machine, sample: Sample) -> tuple[tuple[Command, Answer], ..
     )
 
 
-def own_bytes(pair: SerialPair, sample: Sample) -> tuple[int, ...]:
+def own_bytes(pair: Pair, sample: Sample) -> tuple[int, ...]:
     """The branch bytes of a sample; nothing where it has no pose."""
     status, answer = asked(pair.robot.forward, sample.axes)
     return tuple(answer[1][: pair.robot.BRANCHES]) if status == OK else ()
 
 
-def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command: object) -> None:
+def assert_same_pose(pair: Pair, found: Answer, expected: Answer, command: object) -> None:
     """Where branches meet the last digit decides half of those of an angle, and perhaps whether another is free.
 
     Both answers must reach the same pose, which is known to all digits.
@@ -93,7 +93,7 @@ def assert_same_pose(pair: SerialPair, found: Answer, expected: Answer, command:
     )
 
 
-def diagnose(pair: SerialPair, sample: Sample) -> None:
+def diagnose(pair: Pair, sample: Sample) -> None:
     """Diagnose gives the reason of Python for every command of the sample that is refused, and no reason for the first
     that is not: what it finds then is what `inverse` compares for all of them.
     """

@@ -9,11 +9,11 @@ from softkin._start import IterativeForward
 
 from tests.text import values
 from tests.text.controller import OK, asked, assert_same
+from tests.text.pairs import Pair
 from tests.text.samples import Sample
-from tests.text.serial_pairs import SerialPair
 
 
-def jacobian(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
+def jacobian(pair: Pair, sample: Sample, start: Frame | None = None) -> None:
     """Jacobian writes the matrix of Python, and zeros in all other places."""
     status, rows = asked(pair.robot.jacobian, sample.axes, *_start_in_python(pair, start))
     expected = None
@@ -23,7 +23,7 @@ def jacobian(pair: SerialPair, sample: Sample, start: Frame | None = None) -> No
     assert_same(pair.controller.jacobian(sample.axes, start), (status, expected), pair, sample)
 
 
-def axis_velocities(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
+def axis_velocities(pair: Pair, sample: Sample, start: Frame | None = None) -> None:
     """AxisVelocities gives what the Jacobian of Python turns into the twist; where that is singular, a status and
     zeros.
     """
@@ -49,7 +49,7 @@ def axis_velocities(pair: SerialPair, sample: Sample, start: Frame | None = None
     assert not any(found[len(speeds) :])
 
 
-def axis_accelerations(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
+def axis_accelerations(pair: Pair, sample: Sample, start: Frame | None = None) -> None:
     """AxisAccelerations gives what Python turns into the twist's rate, or the status of AxisVelocities and zeros."""
     rate, speeds = [400.0, -300.0, 200.0, 100.0, -150.0, 250.0], [30.0, -20.0, 40.0, 25.0, -35.0, 45.0]
     found = [values.MEANINGLESS] * 6
@@ -75,12 +75,12 @@ def axis_accelerations(pair: SerialPair, sample: Sample, start: Frame | None = N
     assert not any(found[len(angles) :])
 
 
-def singularity(pair: SerialPair, sample: Sample) -> None:
+def singularity(pair: Pair, sample: Sample) -> None:
     expected = pair.robot.singularity(sample.axes).is_singular
     assert pair.controller.is_singular(sample.axes) == expected, f"{pair} {sample}"
 
 
-def margins(pair: SerialPair, sample: Sample, start: Frame | None = None) -> None:
+def margins(pair: Pair, sample: Sample, start: Frame | None = None) -> None:
     """Margins writes those of Python, and zeros in all other places."""
     found = [values.MEANINGLESS] * 8
     status, outputs = _called(pair, "Margins", {"aMargins": found, "a": values.axes(pair.library, sample.axes)}, start)
@@ -92,19 +92,19 @@ def margins(pair: SerialPair, sample: Sample, start: Frame | None = None) -> Non
         assert found == [values.MEANINGLESS] * 8 and all(map(isnan, expected))
 
 
-def from_start(compare: Callable[[SerialPair, Sample, Frame], None]) -> Callable[[SerialPair, Sample], None]:
+def from_start(compare: Callable[[Pair, Sample, Frame], None]) -> Callable[[Pair, Sample], None]:
     """The comparison of the method that takes a start as well, with the frame of the axes; the origin where they have
     none.
     """
 
-    def compare_from(pair: SerialPair, sample: Sample) -> None:
+    def compare_from(pair: Pair, sample: Sample) -> None:
         status, found = asked(lambda axes: pair.robot.forward(axes)[0], sample.axes)
         compare(pair, sample, found if status == OK else Frame((0.0, 0.0, 0.0)))
 
     return compare_from
 
 
-def _called(pair: SerialPair, method: str, given: dict[str, Any], start: Frame | None) -> tuple[str, dict[str, Any]]:
+def _called(pair: Pair, method: str, given: dict[str, Any], start: Frame | None) -> tuple[str, dict[str, Any]]:
     """The status and the outputs of a method; of the one that takes a start, if there is one."""
     block = pair.controller.block
     if start is None:
@@ -112,6 +112,6 @@ def _called(pair: SerialPair, method: str, given: dict[str, Any], start: Frame |
     return block.call_with_outputs(f"{method}From", **given, f=values.frame(pair.library, *start))
 
 
-def _start_in_python(pair: SerialPair, start: Frame | None) -> tuple[Frame, ...]:
+def _start_in_python(pair: Pair, start: Frame | None) -> tuple[Frame, ...]:
     """The start as an argument in Python, where a machine with one frame at its axes takes none."""
     return () if start is None or not isinstance(pair.robot, IterativeForward) else (start,)

@@ -10,10 +10,11 @@ import softkin
 
 from derive.description.mechanism import Mechanism
 from tests.catalogue.coupling.parts import ORIENTATIONS, Part, orientation_parts, part
+from tests.catalogue.machines import Machine
 from tests.text import values
-from tests.text.both import Both, Machine
+from tests.text.both import Both
 from tests.text.controller import OK, Answer, Controller
-from tests.text.samples import NO_TURN, Rows, Sample, tilted
+from tests.text.samples import NO_TURN, Rows, Sample, samples_at
 from tests.text.units import compiled
 from tests.text.values import Numbers
 
@@ -116,18 +117,8 @@ def _pair(one: Part, order: str) -> OrientationPair:
     assert controller.initialise(one.robot.parameters) == OK
     rng = np.random.default_rng(29)
     unlimited = part(one.mechanism, **{p.name: one.robot.parameters[p.name] for p in one.mechanism.parameters})
-    samples = tuple(_sample(one.robot, axes, rng) for axes in unlimited.draw(8, rng).tolist())
-    return OrientationPair(Machine("", one.mechanism, {}, one.robot), controller, one, samples)
-
-
-def _sample(robot: softkin.Mechanism, axes: list[float], rng: np.random.Generator) -> Sample:
-    return Sample(
-        axes=tuple(axes),
-        reference=tuple((np.array(axes) + rng.uniform(-400.0, 400.0, len(axes))).tolist()),
-        rotation=tilted(rng),
-        offset=(0.0, 0.0, 0.0),
-        data=tuple(rng.integers(0, 256, len(robot.CONFIGURATION)).tolist()),
-    )
+    machine = Machine("", one.mechanism, {}, one.robot, one.closure, 300.0)
+    return OrientationPair(machine, controller, one, samples_at(machine, unlimited.draw(8, rng)))
 
 
 __all__ = ["ORIENTATIONS", "OrientationController", "Image", "OrientationPair", "orientation_pairs_of"]

@@ -14,13 +14,12 @@ from tests.catalogue.hexapod import test_refusals
 from tests.catalogue.hexapod.machines import Array, Machine, found_from, machines, without_mode
 from tests.harness.library import Library
 from tests.machines.other_poses import platform
-from tests.text import test_blocks_alone, test_garbage, test_initialise, values
+from tests.text import values
 from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller
 from tests.text.hexapod.blocks import controller, made
-from tests.text.loops.machines import Loop, loops_of
-from tests.text.loops.test_every_statement import compare_all
+from tests.text.pairs import pairs_of
 from tests.text.statements import Statements
-from tests.text.test_every_statement import left_out
+from tests.text.test_every_statement import asked_of_every_block, compare_all, left_out
 from tests.text.units import compiled, compiled_text, file_of, text_of
 
 
@@ -100,20 +99,19 @@ def accelerated(block: Controller, axes: tuple[float, ...]) -> str:
 @pytest.mark.slow
 def test_every_statement_runs() -> None:
     """This file, and what is asked of every block, execute every statement of this one."""
-    loops, small = loops_of(MECHANISM), compiled(MECHANISM, matrix_size=36)
+    loops, small = pairs_of(MECHANISM), compiled(MECHANISM, matrix_size=36)
     statements = Statements([file_of(MECHANISM)], [compiled(MECHANISM), small, ending_where_nothing_holds()])
     with statements.watched():
         for name in ("nominal", "lopsided"):
             compare_some(machines()[name], controller(name), 2)
         compare_all(loops[1], loops[1].regular[0])
-        test_blocks_alone.test_the_number_of_axes(loops)
-        test_initialise.test_no_method_works(loops, test_initialise.fresh)
+        for test in asked_of_every_block(loops):
+            test()
         test_the_other_assembly_mode_is_refused()
         test_without_control_there_is_no_jacobian()
-        test_garbage.test_garbage_in_one_number(loops[:2] * 2)
         for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
             test_refusals.test_what_is_no_rotation(turn)
-        check_initialize(loops)
+        check_initialize()
         check_bounds()
         check_other_poses()
         assert (
@@ -147,11 +145,8 @@ def check_other_poses() -> None:
         assert block.block.call(method, **given, a=at_home, f=nowhere) == BAD_INPUT
 
 
-def check_initialize(loops: tuple[Loop, ...]) -> None:
-    """Every parameter alone, limits in the wrong order, machines that cannot work, a matrix of another size."""
-    test_initialise.test_every_parameter_is_checked(loops[-1:])
-    test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
-    test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)
+def check_initialize() -> None:
+    """Machines that cannot work, and limits that change nothing."""
     for case in test_refusals.refused_parameters():
         test_refusals.test_machines_that_cannot_work(case)
     limits = {f"{end}_l{k}": value for k in range(1, 7) for end, value in (("lower", 1.0), ("upper", 1e4))}

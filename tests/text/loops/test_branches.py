@@ -5,8 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, Controller, asked, assert_same
-from tests.text.loops.machines import Loop
+from tests.text.controller import BAD_INPUT, IMPOSSIBLE, OK, UNREACHABLE, asked, assert_same
+from tests.text.pairs import Pair
 from tests.text.samples import Bytes, Sample
 
 pytestmark = pytest.mark.slow
@@ -15,13 +15,13 @@ POSES, FAR = 4, 100
 BYTES = (0, 1, 2, 3)
 
 
-def combinations(loop: Loop) -> list[Bytes]:
+def combinations(loop: Pair) -> list[Bytes]:
     """All branch bytes, with open turns."""
     turns = (0,) * len(loop.robot.PERIOD_AXES)
     return [(*data, *turns) for data in product(BYTES, repeat=loop.robot.BRANCHES)]
 
 
-def compare(loop: Loop, position: tuple[float, ...], sample: Sample, data: Bytes) -> str:
+def compare(loop: Pair, position: tuple[float, ...], sample: Sample, data: Bytes) -> str:
     """Ask both for the inverse; answers the status."""
     rotation = asked(loop.robot.orientation, sample.axes)[1] or sample.rotation
     status, axes = asked(loop.robot.inverse, (position, rotation), data, sample.reference)
@@ -31,7 +31,7 @@ def compare(loop: Loop, position: tuple[float, ...], sample: Sample, data: Bytes
     return status
 
 
-def test_all_branches_at_poses(loops: tuple[Loop, ...]) -> None:
+def test_all_branches_at_poses(loops: tuple[Pair, ...]) -> None:
     """Every combination of branch bytes is answered as in Python, at regular poses."""
     for loop in loops:
         statuses = {
@@ -42,7 +42,7 @@ def test_all_branches_at_poses(loops: tuple[Loop, ...]) -> None:
         assert OK in statuses or loop.machine.label == "limited"
 
 
-def test_the_own_branch_leads_back(loops: tuple[Loop, ...]) -> None:
+def test_the_own_branch_leads_back(loops: tuple[Pair, ...]) -> None:
     """Not only what Python answers: the axis values that the pose was made of."""
     for loop in loops[:2]:
         for sample in loop.regular:
@@ -53,7 +53,7 @@ def test_the_own_branch_leads_back(loops: tuple[Loop, ...]) -> None:
             np.testing.assert_allclose(axes[: len(sample.axes)], sample.axes, rtol=1e-8, atol=1e-6)
 
 
-def test_poses_that_may_be_out_of_reach(loops: tuple[Loop, ...]) -> None:
+def test_poses_that_may_be_out_of_reach(loops: tuple[Pair, ...]) -> None:
     """Anywhere around the machine; the own plane of a planar one, and beside it. Any rotation of what only turns."""
     rng = np.random.default_rng(21)
     for loop in loops:
@@ -63,12 +63,12 @@ def test_poses_that_may_be_out_of_reach(loops: tuple[Loop, ...]) -> None:
             size = loop.machine.reach * (0.3, 1.0, 100.0)[k % 3]
             depth = 0.0 if len(loop.mechanism.task.position) == 2 and k % 10 else 1.0
             position = tuple((rng.uniform(-1.0, 1.0, 3) * size * (1.0, 1.0, depth)).tolist())
-            samples = loop.regular if loop.mechanism.task.position else loop.any
+            samples = loop.regular if loop.mechanism.task.position else loop.anywhere
             statuses.append(compare(loop, position, samples[k % len(samples)], opened[k % len(opened)]))
         assert UNREACHABLE in statuses
 
 
-def test_a_byte_without_a_meaning_is_refused(loops: tuple[Loop, ...]) -> None:
+def test_a_byte_without_a_meaning_is_refused(loops: tuple[Pair, ...]) -> None:
     """A branch byte other than 0 to 3 is refused as bad input, as in Python."""
     for loop in loops:
         default = loop.robot.DEFAULT_CONFIGURATION
@@ -79,7 +79,7 @@ def test_a_byte_without_a_meaning_is_refused(loops: tuple[Loop, ...]) -> None:
                 assert compare(loop, position, sample, data) == BAD_INPUT
 
 
-def test_turns(loops: tuple[Loop, ...]) -> None:
+def test_turns(loops: tuple[Pair, ...]) -> None:
     """All period bytes that an axis can be asked for, and that cannot be met with limits."""
     for loop in loops:
         for sample in loop.regular[:3]:
@@ -88,31 +88,9 @@ def test_turns(loops: tuple[Loop, ...]) -> None:
                 compare(loop, frame.position, sample, (*own[:index], turn, *own[index + 1 :]))
 
 
-def test_every_limit_refuses_alone(loops: tuple[Loop, ...]) -> None:
-    """Either end of every axis, and not where limits are not checked."""
-    loop = loops[1]
-    sample = loop.regular[0]
-    position, rotation, data = loop.controller.forward(sample.axes)[1]
-    own = data[: len(loop.robot.CONFIGURATION)]
-    for joint, value in zip(loop.mechanism.joints, sample.axes, strict=True):
-        for lower, upper, expected in (
-            (value - 1.0, value + 1.0, OK),
-            (value + 1e-3, value + 1.0, UNREACHABLE),
-            (value - 1.0, value - 1e-3, UNREACHABLE),
-        ):
-            limits = {f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
-            for checked, answer in ((True, expected), (False, OK)):
-                controller = Controller(loop.library, loop.mechanism)
-                assert controller.initialise({**loop.robot.parameters, **limits, "check_limits": checked}) == OK
-                assert controller.inverse(position, rotation, own, sample.axes)[0] == answer
-                reason, missing = controller.diagnose(position, rotation, own, sample.axes)
-                assert (answer == UNREACHABLE) == reason.startswith(f"{joint.name}: ") == ("limit [" in reason)
-                assert missing == pytest.approx(0.0 if answer == OK else 1e-3, abs=1e-5)
-
-
-def test_a_loop_that_does_not_close_is_impossible(loops: tuple[Loop, ...]) -> None:
+def test_a_loop_that_does_not_close_is_impossible(loops: tuple[Pair, ...]) -> None:
     """And singular."""
     for loop in loops:
-        statuses = [(loop.controller.forward(s.axes)[0], loop.controller.is_singular(s.axes)) for s in loop.any]
+        statuses = [(loop.controller.forward(s.axes)[0], loop.controller.is_singular(s.axes)) for s in loop.anywhere]
         assert all(singular for status, singular in statuses if status != OK)
         assert {status for status, _ in statuses} <= {OK, IMPOSSIBLE}

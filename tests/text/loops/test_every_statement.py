@@ -1,6 +1,6 @@
 """Every statement of every emitted loop is executed by the tests of this folder: none is dead, none untried."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import product
 
@@ -8,20 +8,19 @@ import numpy as np
 import pytest
 
 from derive.description.mechanism import Mechanism
-from tests.catalogue.closure import Closure
+from tests.catalogue.loop_machines import loop_machine
 from tests.catalogue.loops.edges import EDGES, OTHER_WAY_ROUND, PLACES
 from tests.catalogue.loops.test_impossible import EDGES as ENDS
 from tests.catalogue.loops.test_impossible import IMPOSSIBLE
-from tests.text import test_axis_settings, test_blocks_alone, test_configuration_blocks, test_garbage, test_initialise
+from tests.text import test_axis_settings
 from tests.text.controller import NOT_INITIALIZED, Controller, asked, assert_same
 from tests.text.loops import test_branches
-from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loop_of, loops_of
 from tests.text.loops.test_branches import compare
-from tests.text.other_turns import check_other_turns
+from tests.text.pairs import LOOPS, Pair, pair_of, pairs_of
 from tests.text.reasons import compare_reason, provoke
-from tests.text.samples import NO_TURN, Bytes, Command, Sample
+from tests.text.samples import NO_TURN, Bytes, Command, Sample, samples_at
 from tests.text.statements import Statements
-from tests.text.test_every_statement import few, left_out, libraries
+from tests.text.test_every_statement import asked_of_every_block, compare_all, few, left_out, libraries
 from tests.text.units import file_of
 
 pytestmark = pytest.mark.slow
@@ -33,7 +32,7 @@ FEW, FAR = 6, (0.3, 1.0, 3.0)
 @pytest.mark.parametrize("mechanism", [m for m in LOOPS if not m.home], ids=lambda m: m.name)
 def test_every_statement_runs(mechanism: Mechanism) -> None:
     """Of the loops that are solved in closed form: the iteration of a platform has `tests/test_hexapod.py`."""
-    loops = loops_of(mechanism)
+    loops = pairs_of(mechanism)
     statements = Statements([file_of(mechanism)], libraries(mechanism))
     with statements.watched():
         run_the_tests(mechanism, loops)
@@ -44,39 +43,20 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
     assert left_out(mechanism, statements) == []
 
 
-def the_steps(mechanism: Mechanism, loops: tuple[Loop, ...]) -> Iterator[Callable[[], None]]:
+def the_steps(mechanism: Mechanism, loops: tuple[Pair, ...]) -> Iterator[Callable[[], None]]:
     """What other tests ask, too: each step as long as a statement has not run, the best first."""
-    for loop in at_edges(mechanism):
-        yield from (partial(compare_all, loop, sample) for sample in loop.regular)
+    yield from (partial(compare_all, loop, sample) for loop, sample in at_edges(mechanism))
     for loop in loops:
-        yield from (partial(compare_all, loop, sample) for sample in (*few(loop.regular, FEW), *few(loop.any, FEW)))
+        yield from (partial(compare_all, loop, sample) for sample in (*few(loop.regular, FEW), *loop.anywhere))
     yield from (partial(go_out, loop) for loop in loops)
 
 
-def compare_all(loop: Loop, sample: Sample) -> None:
-    """Every method that the block has answers as Python at a sample."""
-    for method, answer in COMPARISONS.items():
-        if method.lower() in loop.controller.methods:
-            answer(loop, sample)
-
-
-def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
+def run_the_tests(mechanism: Mechanism, loops: tuple[Pair, ...]) -> None:
     """What the comparisons leave out: refusals, and the other blocks."""
-    test_blocks_alone.test_the_number_of_axes(loops)
-    test_blocks_alone.test_calling_the_block_itself_does_nothing(loops)
-    test_initialise.test_no_method_works(loops, test_initialise.fresh)
-    test_initialise.test_every_parameter_is_checked(loops[-1:])
-    test_initialise.test_limits_are_in_order(loops, 10.0, 10.0)
-    test_initialise.test_a_matrix_of_another_size_is_refused(loops, 36)
-    test_initialise.test_a_configuration_that_is_too_small_is_refused(loops)
-    test_garbage.test_garbage_in_one_number(loops[:2] * 2)
-    test_garbage.test_what_is_no_rotation(loops[:2])
-    if loops[0].robot.CONFIGURATION:
-        test_configuration_blocks.test_what_is_set_is_read(loops[1])
+    for test in asked_of_every_block(loops):
+        test()
     provoke(loops[1], loops[1].regular[0])
     test_branches.test_a_byte_without_a_meaning_is_refused(loops[:1])
-    test_branches.test_every_limit_refuses_alone(loops)
-    check_other_turns(loops[1], loops[1].regular[0])
     test_axis_settings.every_statement_of_the_settings(mechanism)
     impossible = [given | changes for name, given, changes, _ in IMPOSSIBLE.values() if name == mechanism.name]
     own = type(loops[0].robot).__name__
@@ -85,7 +65,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
         assert Controller(loops[0].library, mechanism).initialise(given) == NOT_INITIALIZED
 
 
-def go_out(loop: Loop) -> None:
+def go_out(loop: Pair) -> None:
     """Away from some poses in all directions, so that every leg in turn is the one that cannot reach."""
     own, default = loop.robot.CONFIGURATION, loop.robot.DEFAULT_CONFIGURATION
     for index in range(loop.robot.BRANCHES):
@@ -103,7 +83,7 @@ def go_out(loop: Loop) -> None:
                 compare_offset(loop, place, sample, data)
 
 
-def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: Bytes) -> None:
+def compare_offset(loop: Pair, place: tuple[float, ...], sample: Sample, data: Bytes) -> None:
     """The same for a point off the flange."""
     if "cartesiantoaxes_offset" in loop.controller.methods:
         asked_for = place, sample.offset, data, sample.reference
@@ -112,21 +92,26 @@ def compare_offset(loop: Loop, place: tuple[float, ...], sample: Sample, data: B
         assert_same(loop.controller.inverse_offset(*asked_for), (status, expected), loop, *asked_for)
 
 
-def at_reference(loop: Loop, sample: Sample) -> np.ndarray:
+def at_reference(loop: Pair, sample: Sample) -> np.ndarray:
     """The rotation of the flange with the joints that turn it at the reference, where a point off it holds them."""
-    closure = Closure(loop.mechanism, loop.robot.parameters)
+    closure = loop.machine.closure
     return closure.turns(closure.joints(np.array([sample.reference])))[0]
 
 
-def at_edges(mechanism: Mechanism) -> list[Loop]:
+def sampled(mechanism: Mechanism, dimensions: Mapping[str, float], axes: tuple[float, ...]) -> tuple[Pair, Sample]:
+    """A machine, and a sample at axis values."""
+    loop = pair_of(loop_machine(mechanism, "edge", dimensions))
+    return loop, *samples_at(loop.machine, [axes])
+
+
+def at_edges(mechanism: Mechanism) -> list[tuple[Pair, Sample]]:
     """Machines at the end of what can be assembled, at the axis values of the end. Places that no leg can aim at are
     asked.
     """
     others = [OTHER_WAY_ROUND[mechanism.name]] if mechanism.name in OTHER_WAY_ROUND else []
-    found = [loop_of(mechanism, "edge", dimensions, [axes]) for dimensions, axes in (*EDGES[mechanism.name], *others)]
+    found = [sampled(mechanism, *edge) for edge in (*EDGES[mechanism.name], *others)]
     for dimensions, places in PLACES.get(mechanism.name, ()):
-        loop = loop_of(mechanism, "place", dimensions, [(0.0,) * len(mechanism.joints)])
-        (sample,) = loop.regular
+        loop, sample = sampled(mechanism, dimensions, (0.0,) * len(mechanism.joints))
         for place, data in product(places, product((0, 1, 2), repeat=loop.robot.BRANCHES)):
             turned = (*data, *(0,) * len(loop.robot.PERIOD_AXES))
             compare_reason(loop, Command(place, NO_TURN, turned, sample.axes))

@@ -1,6 +1,7 @@
 """These tests would notice: a text with one statement slightly wrong answers differently from Python."""
 
 import re
+from dataclasses import replace
 from itertools import cycle
 
 import pytest
@@ -8,8 +9,9 @@ import pytest
 from derive.description.mechanism import Mechanism
 from tests.harness.library import Library, compile_st
 from tests.text.breakage import Break, texts
+from tests.text.comparisons import COMPARISONS
 from tests.text.controller import OK, Controller
-from tests.text.loops.machines import COMPARISONS, LOOPS, Loop, loops_of
+from tests.text.pairs import LOOPS, pairs_of
 from tests.text.units import compiled_text, file_of, text_of
 
 pytestmark = pytest.mark.slow
@@ -47,12 +49,11 @@ def test_a_wrong_statement_is_noticed(mechanism: Mechanism, method: str) -> None
 
 def compare(mechanism: Mechanism, library: Library, method: str, samples: int) -> None:
     """The comparisons of a method, with another text for the block."""
-    loop = loops_of(mechanism)[1]
+    loop = pairs_of(mechanism)[1]
     controller = Controller(library, mechanism)
     assert controller.initialise(loop.robot.parameters) == OK
-    other = Loop(loop.machine, controller, loop.regular, loop.any)
     for sample in loop.regular[:samples]:
-        COMPARISONS[method](other, sample)
+        COMPARISONS[method](replace(loop, controller=controller), sample)
 
 
 _BRANCH, _FORWARD, _INPUTS = (
