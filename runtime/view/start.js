@@ -1,8 +1,12 @@
 /** The machine as it stands at first: near the pose in which it is drawn, and away from singular poses. */
 
+import { shapesOf } from "./shapes.js";
+
 const SWEEP = [27, 41, -33, 22, 48, 15, -19];
 const FACTORS = [1, 0.6, -1, 0.3, -0.6, 1.6, 0];
 const GOOD = 0.12;
+/** How high the tool stands above its work. */
+const WORK = 0.4;
 
 /** The nominal values of all parameters, by name. */
 export function nominalOf(description) {
@@ -27,7 +31,16 @@ export function startOf(machine) {
     if (worth !== null && (best === null || worth > best.worth)) best = { axes, worth };
     if (best && best.worth >= GOOD) break;
   }
-  return best ? best.axes : drawnOf(machine);
+  return best ? aboveWork(machine, best.axes) : drawnOf(machine);
+}
+
+/** The tool of a machine whose tables carry the work stands above the work, if the machine comes there. */
+function aboveWork(machine, axes) {
+  const { frame, configuration } = machine.forward(axes);
+  if (frame.position[2] > 0 || shapesOf(machine.scene(axes, frame)).bed === null) return axes;
+  const lifted = { ...frame, position: [0, 0, WORK * lengthOf(machine)] };
+  const found = machine.inverse(lifted, openTurns(machine, configuration), axes);
+  return found.status ? axes : found.axes;
 }
 
 function* candidates(machine) {

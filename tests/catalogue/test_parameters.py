@@ -74,13 +74,17 @@ def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, ma
     lengths = {p.name: p.nominal for p in mechanism.parameters if p.default is None}
     assert {p.name for p in mechanism.parameters if p.role is Role.LENGTH} <= set(lengths)
     rails = {p.name: p.nominal for p in mechanism.parameters if p.name.startswith("rail_") and p.default is not None}
-    robot_class(**lengths, **rails)  # rails that are not given all lie on the origin: one or two may, three may not
+    robot = robot_class(**lengths, **rails)  # rails that are not given lie on the origin: one or two may, three may not
     for name in lengths:
         with pytest.raises(TypeError, match=name):
             robot_class(**{k: v for k, v in lengths.items() if k != name})
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="'no_such_parameter': the parameters are "):
         robot_class(**lengths, no_such_parameter=1.0)
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="'chek_limits': did you mean 'check_limits'"):
+        robot_class(**lengths, chek_limits=True)
+    with pytest.raises(TypeError, match="'chek_limits': did you mean 'check_limits'"):
+        robot.changed(chek_limits=True)
+    with pytest.raises(TypeError, match="give each parameter by its name, as "):
         robot_class(325.0, 225.0)
 
 

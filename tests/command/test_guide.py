@@ -36,6 +36,7 @@ SAID_ELSEWHERE = {
     "the home pose has … assembly modes": "tests/unit/witness/test_refusals",
     "… holds '…', which was not generated: it is not replaced": "test_derive",
     "… holds '…' of another machine: take another folder, or remove it": "test_derive",
+    "… holds '…', written by another version of Softkin: take another folder, or remove it": "test_derive",
     "… holds the machine '…': derive into another folder with --out, or remove it": "test_derive",
     "'…' is a package that exists: give another name with --package": "test_derive",
     "'…' cannot name a Python package: give another one with --package": "test_derive",

@@ -128,6 +128,9 @@ def test_machines_look_like_machines(seen: Seen) -> None:
     assert shapes["Softkin_HeadTable_AC"] == ["table", "beam", "beam", "beam", "barrel"]
     assert shapes["Kin_Scara2_Z"] == ["barrel", "barrel", "quill"]
     assert shapes["Kin_Tripod_Linear"] == ["beam"] * 3
+    tables = [name for name, found in shapes.items() if found.count("beam") == 3 and "table" in found]
+    heights = [seen["machines"][name]["frame"]["position"][2] for name in tables]
+    assert len(heights) > 5 and min(heights) > 0  # the tool stands above the work
 
 
 @pytest.mark.parametrize(

@@ -217,7 +217,10 @@ def stored_in_base(kinematics: Kinematics) -> dict[str, str]:
         for index, joint in enumerate(kinematics.mechanism.joints)
         for word, member in _OF_AXIS.items()
     }
-    return of_axes | {TIE_OF_LENGTHS.name: "tie"} | start_in("home")
+    start = start_in("home")
+    held = {o.value: start[o.name] for o in kinematics.setup.outputs if o.name in start and o.value.is_Symbol}
+    same = {o.name: held[o.value] for o in kinematics.setup.outputs if o.value in held}
+    return of_axes | {TIE_OF_LENGTHS.name: "tie"} | same | start
 
 
 def start_in(structure: str) -> dict[str, str]:
@@ -234,7 +237,9 @@ def stored_as(kinematics: Kinematics, name: str) -> str:
 def _computed(kinematics: Kinematics) -> tuple[tuple[str, str], ...]:
     setup = setup_of(kinematics)
     given, bound = {o.name for o in setup.outputs}, set(direct(kinematics, setup).values())
-    return tuple((stored_as(kinematics, o), o) for o in constants(kinematics) if o in given and o not in bound)
+    done = {stored_as(kinematics, o) for o in bound}
+    found = {stored_as(kinematics, o): o for o in reversed(constants(kinematics)) if o in given}
+    return tuple((place, o) for place, o in reversed(found.items()) if place not in done)
 
 
 def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:

@@ -13,7 +13,16 @@ from derive.emit.st.expression import StructuredText, limits_of
 from derive.emit.st.layout import INSIDE, WIDTH, commented, conjunction, wrapped
 from derive.emit.st.names import respelled, spellings, type_name
 from derive.emit.st.refusal import Refusal
-from derive.emit.st.shared import OUTCOME, call_lines, result_names, structure_of, structures_of
+from derive.emit.st.shared import (
+    FILLED,
+    OUTCOME,
+    TYPE_OF_START,
+    call_lines,
+    fills_start,
+    result_names,
+    structure_of,
+    structures_of,
+)
 from derive.emit.st.stretches import SIDE, has_sides, stretch_lines
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import Root, Select
@@ -65,7 +74,7 @@ def printed(
     unread = _unread(program, items)
     own = {name.name: name for name in bound_in(items) if name.name not in stored and name not in unread}
     whole = [s.variable for _, s in structures]
-    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, *whole, *((SIDE,) if is_branch else ())))
+    temporaries = spellings(own, (*taken, *LOCALS, OUTCOME, FILLED, *whole, *((SIDE,) if is_branch else ())))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     side = (f"{SIDE} : INT;",) if is_branch and has_sides(program) else ()
     if not is_branch:
@@ -78,6 +87,7 @@ def printed(
             *declarations(program.body),
             *_outcome(program, refusal),
             *side,
+            *((f"{FILLED} : {TYPE_OF_START};",) if fills_start(program, printer) else ()),
             *(f"{s.variable} : {s.type_in(block)};" for _, s in structures),
         ),
         body="\n".join(body),

@@ -1,7 +1,7 @@
 """Programs that several methods share: each is a private method, and calling it is a statement.
 
-Its arguments are inputs and its results are outputs; many results stand in a structure of the caller. A value in a
-structure (`a.a0`) is passed with the whole structure.
+Its arguments are inputs and its results are outputs; many results stand in a structure of the caller, and the pose at
+which it begins in another one. A value in a structure (`a.a0`) is passed with the whole structure.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ _OWN_AXES = "axes["
 _MOST_OUTPUTS = 12
 """The most results that are outputs of their own: more than a position and a rotation stand in a structure."""
 _ROTATION = frozenset(r.name for r in ROTATION_ENTRIES)
+_START, TYPE_OF_START, FILLED = "start", "Softkin_Start", "startPose"
+"""The parameter that holds the pose at which a program begins, its type, and the variable that a caller fills."""
 
 
 @dataclass(frozen=True)
@@ -92,12 +94,14 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
         raise TypeError(
             f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}"
         )
+    starts = fields_of_start(program)
     arguments = [
         Parameter("VAR_INPUT", parameter_name(s.name), type_name(type_of(s)))
         for s in program.inputs
-        if s.name not in spelled
+        if s.name not in spelled and s.name not in starts
     ]
-    given = (axes, *arguments) if whole else tuple(arguments)
+    start = [Parameter("VAR_IN_OUT CONSTANT", _START, TYPE_OF_START)] if starts else []
+    given = (*([axes] if whole else []), *start, *arguments)
     results = [Parameter("VAR_OUTPUT", parameter_name(o.name), type_name(type_of(o.value))) for o in program.outputs]
     parameters = (*given, *results)
     if (structure := structure_of(program)) is not None:
@@ -108,7 +112,33 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
 def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
     """The spelling of the arguments and the results of a shared program, which are parameters of its method."""
     arguments = {s.name: parameter_name(s.name) for s in program.inputs if s.name not in spelled}
-    return arguments | result_names(program)
+    start = {name: f"{_START}{field}" for name, field in fields_of_start(program).items()}
+    return arguments | start | result_names(program)
+
+
+def fields_of_start(program: Program) -> dict[str, str]:
+    """The fields of a pose by the names of the arguments that are one; empty if its rotation is not among them."""
+    fields = {f"begin_{c}": f".v.d{c.upper()}" for c in "xyz"}
+    fields |= {f"begin_{r.name}": f".rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
+    names = {s.name for s in program.inputs}
+    is_pose = names >= {f"begin_{name}" for name in _ROTATION}
+    return {name: field for name, field in fields.items() if is_pose and name in names}
+
+
+def fills_start(program: Program, printer: StructuredText) -> bool:
+    """Whether a call in a program begins at a pose that no structure holds: a variable of the caller is filled."""
+    return any(_start(call, printer)[1] for call in program.calls())
+
+
+def _start(call: Call, printer: StructuredText) -> tuple[str, list[str]]:
+    """The structure that holds the pose at which a call begins, and the lines that fill it; empty if it has no pose."""
+    fields = fields_of_start(call.program)
+    texts = {fields[s.name]: printer.value(s, value) for s, value in call.given if s.name in fields}
+    held = {text.removesuffix(field) for field, text in texts.items() if text.endswith(field)}
+    if len(held) == 1 and all(text.endswith(field) for field, text in texts.items()):
+        return held.pop(), []
+    lines = [f"{FILLED}{field} := {text};" for field, text in texts.items() if text != "0.0"]  # it begins with zeros
+    return (FILLED if fields else ""), lines
 
 
 def result_names(program: Program) -> dict[str, str]:
@@ -124,7 +154,11 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
     """
     structure = structure_of(call.program)
     whole = [f"{structure.variable} := {structure.variable}"] if structure is not None else []
-    arguments = list(dict.fromkeys((*whole, *(_argument(name, value, printer) for name, value in call.given))))
+    start, filled = _start(call, printer)
+    of_start = fields_of_start(call.program)
+    given = [_argument(name, value, printer) for name, value in call.given if name.name not in of_start]
+    arguments = list(dict.fromkeys((*whole, *given, *([f"{_START} := {start}"] if start else []))))
+    yield from filled
     outputs = call.names if structure is None else ()
     results = [f"{parameter_name(name.name)} => {printer.name(name)}" for name in outputs]
     refused = [

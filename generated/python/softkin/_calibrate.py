@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
@@ -16,6 +15,7 @@ from softkin._calibrated import Calibrated, bare_of
 from softkin._core import Mechanism
 from softkin._deviations import ENDS, units_of
 from softkin._identification import SCALES, determined
+from softkin._input import suggestion
 from softkin._samples import Measured, Samples, measured, refused
 from softkin._sensitivity import model
 from softkin._types import KinematicsError, Status
@@ -284,9 +284,8 @@ def _chosen(nominal: Mechanism, parameters: Iterable[str] | None) -> tuple[list[
     for group, word in enumerate([parameters] if isinstance(parameters, str) else parameters):
         meant = [n for n in units if n == word] or [n for n in units if _means(word, n)]
         if not meant:
-            near = get_close_matches(word, units, 1, 0.5)
-            listed = f"did you mean {near[0]!r}?" if near else f"the names are {', '.join(units)}"
-            raise KinematicsError(Status.BAD_INPUT, f"parameters: {nominal.NAME} has no deviation {word!r}: {listed}")
+            wrong = f"parameters: {nominal.NAME} has no deviation {word!r}: {suggestion(word, units)}"
+            raise KinematicsError(Status.BAD_INPUT, wrong)
         for name in meant:
             found.setdefault(name, group)
     return list(found), list(found.values())

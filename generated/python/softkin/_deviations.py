@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from math import isfinite
 from typing import TYPE_CHECKING
 
 from softkin._chain import joints_of
+from softkin._input import suggestion
 from softkin._types import KinematicsError, Status
 
 if TYPE_CHECKING:
@@ -54,9 +54,7 @@ def checked(robot: Mechanism, given: Mapping[str, float]) -> dict[str, float]:
     units = units_of(robot)
     for name, value in given.items():
         if name not in units:
-            near = get_close_matches(str(name).lower(), units, 1, 0.5)
-            listed = f"did you mean {near[0]!r}?" if near else f"the names are {', '.join(units)}"
-            raise _refused(robot, f"have no {name!r}: {listed}")
+            raise _refused(robot, f"have no {name!r}: {suggestion(str(name), units)}")
         if isinstance(value, bool) or not _is_number(value):
             raise _refused(robot, f"must be finite numbers, and {name} is {value!r}")
     return {name: float(given[name]) for name in units if given.get(name)}

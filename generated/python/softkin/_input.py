@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 from array import array
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Set, Sized
 from math import isnan, nan
 from typing import Any
 
@@ -14,6 +14,8 @@ from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotat
 
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 _ROUNDED = 1e-9
+_TAKES_ANY = 0x0C
+"""The flags of a function that takes any number of arguments, or any keyword."""
 """The last row of a matrix (4, 4) may differ by this."""
 
 
@@ -147,6 +149,32 @@ def unusable(inputs: dict[str, object]) -> str:
             if not abs(number) <= LARGEST:
                 return f"{name} is {number!r}"
     return ""
+
+
+def keywords_of(function: Any) -> Set[str]:
+    """The keywords of a method that takes nothing else, in their order; empty if it does."""
+    code = getattr(function, "__code__", None)
+    if code is None or code.co_argcount != 1 or code.co_flags & _TAKES_ANY:
+        return frozenset()
+    return dict.fromkeys(code.co_varnames[1 : 1 + code.co_kwonlyargcount]).keys()
+
+
+def refuse_strange_keywords(name: str, known: Set[str], places: Sized, given: Mapping[str, object]) -> None:
+    """Raise TypeError for a value without a name, and for a name that is not known. known: empty if all are allowed."""
+    if places and known:
+        raise TypeError(f"{name}: give each parameter by its name, as {name}({next(iter(known))}=…)")
+    if known and not given.keys() <= known:
+        strange = next(one for one in given if one not in known)
+        raise TypeError(f"{name} has no parameter {strange!r}: {suggestion(strange, known, 'parameters')}")
+
+
+def suggestion(word: str, known: Iterable[str], what: str = "names") -> str:
+    """The known name that was perhaps meant, or all of them."""
+    from difflib import get_close_matches  # nothing else needs it
+
+    names = list(known)
+    near = get_close_matches(word.lower(), names, 1, 0.5)
+    return f"did you mean {near[0]!r}?" if near else f"the {what} are {', '.join(names)}"
 
 
 def _named(what: str, value: object) -> Iterable[tuple[str, float]]:

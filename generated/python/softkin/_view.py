@@ -53,10 +53,10 @@ def view(robot: Mechanism, axes: Numbers | None, page: str | PathLike[str] | Non
     """See `Mechanism.view`."""
     source = _PAGE if page is None else Path(page)
     if not source.is_file():
-        words = "there is no page of the viewer: `make view` writes build/viewer.html, `softkin view my_machine.py`"
-        raise KinematicsError(
-            Status.NOT_INITIALIZED, f"{robot.NAME}.view: {source}: {words} that of another machine; name it: page="
-        )
+        where = "the page of the viewer did not come with this installation" if page is None else f"there is no {page}"
+        made = "`make view` in the folder of Softkin writes build/viewer.html"
+        remedy = "give it as page=; for a machine of your own, give the page that `softkin view` writes"
+        raise KinematicsError(Status.NOT_INITIALIZED, f"{robot.NAME}.view: {where}: {made}; {remedy}")
     machine, text = robot.in_degrees(), source.read_text(encoding="utf-8")
     machine = machine.bare.in_degrees() if isinstance(machine, Mounted) else machine
     found = _DATA.search(text)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 
 from softkin._ends import Ends, ends_of, limit_names
+from softkin._input import keywords_of, refuse_strange_keywords
 from softkin._types import Axis, KinematicsError, Parameter, Status
 
 _Found = TypeVar("_Found")
@@ -26,6 +27,8 @@ class Value:
     quantities."""
     parameters: Mapping[str, float]
 
+    _KEYWORDS: Set[str] = frozenset()
+    """The keywords of the class; empty if it takes other arguments, too."""
     _kept: tuple[frozenset[str], dict[str, Any]]
     """The names of the attributes that a subclass may not set, and what is computed when it is first needed."""
 
@@ -35,6 +38,13 @@ class Value:
         for parameter in vars(cls).get("PARAMETERS", ()):
             if not hasattr(cls, parameter.name):
                 setattr(cls, parameter.name, _attribute(parameter))
+        if "__init__" in vars(cls):
+            cls._KEYWORDS = keywords_of(vars(cls)["__init__"])
+
+    def __new__(cls, *places: Any, **given: Any) -> Self:
+        """Raises TypeError for a parameter that the machine does not have, with the one that was perhaps meant."""
+        refuse_strange_keywords(cls.__name__, cls._KEYWORDS, places, given)
+        return super().__new__(cls)
 
     def _seal(self) -> None:
         """No attribute may be set from now on."""
@@ -230,8 +240,9 @@ _Made = TypeVar("_Made", bound=Value)
 
 def _made(cls: type[_Made], keywords: Mapping[str, Any]) -> _Made:
     """A machine of a class, or of a subclass whose own arguments are not known."""
-    made = object.__new__(cls)
-    _own(cls).__init__(made, **keywords)
+    own, made = _own(cls), object.__new__(cls)
+    refuse_strange_keywords(own.__name__, own._KEYWORDS, (), keywords)
+    own.__init__(made, **keywords)
     return made
 
 
