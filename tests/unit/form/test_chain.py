@@ -91,6 +91,12 @@ FORMS = {
         Rz(A1 + 1.57) * Tx(35) * Rz(A2),
         "Rz(a1 + 1.57) * Tx(35) * Rz(a2)",
     ),
+    "what twelve decimals of oblique frames leave is rounding": (
+        CHAINS["ball wrist"],
+        Rz(A1) * Tz(90.364485984607) * Tz(-90.364485984606) * Rz(-0.001) * Tx(-0.021999996333) * Ty(21.999989000001) * Rz(0.001)
+        * Ry(A2) * Tz(LINK),
+        "Rz(a1) * Ry(a2) * Ty(22) * Tz(link)",
+    ),
     "a link stands in front of the turn behind it": (
         CHAINS["SCARA"],
         Rz(A1) * Tx(P1) * Rz(A2) * Tx(LINK) * Rz(0.5),
