@@ -16,5 +16,6 @@ places: the line of a description that is wrong
 quantity: joints and parameters as symbols in equations
 reach: arms that reach a common point; struts or cables that meet in one, surplus ones, their load
 remedies: what to do about a refusal whose own sentence does not say it
+substituted: a description with other symbols
 validate: checks that refuse a wrong description before anything is derived
 """

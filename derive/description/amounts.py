@@ -12,6 +12,7 @@ from dataclasses import replace
 import sympy as sp
 
 from derive.description.mechanism import Kind, Mechanism, Role
+from derive.description.substituted import with_symbols
 from derive.geometry.frames import LETTERS, Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 
@@ -109,11 +110,25 @@ def _wrong_shift(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
 
 def with_exact_angles(mechanism: Mechanism) -> Mechanism:
     """The mechanism with the exact multiples of 90° in its chain, however they are written: `90*DEGREE`, `1.5708`; and
-    with the exact thousandths of a degree for long decimals, 22.5° for `0.3926990817`.
+    with the exact thousandths of a degree for long decimals, 22.5° for `0.3926990817`. In the equations of
+    a loop `120*DEGREE` becomes 2 pi/3.
     """
     if mechanism.chain is None:
-        return mechanism
+        return _with_exact_functions(mechanism)
     return replace(mechanism, chain=Chain(tuple(map(_with_exact_angle, mechanism.chain.factors))))
+
+
+def _with_exact_functions(mechanism: Mechanism) -> Mechanism:
+    stated = (sp.sympify(e) for e in (*mechanism.equations, *(b.indicator for b in mechanism.branches)))
+    functions = {f for e in stated for f in e.atoms(sp.sin, sp.cos) if f.has(DEGREE)}
+    table = {f: f.func(sp.Add(*map(_in_exact_radians, sp.Add.make_args(sp.expand(f.args[0]))))) for f in functions}
+    exact: Mechanism = with_symbols(mechanism, {f: g for f, g in table.items() if f != g})
+    return exact
+
+
+def _in_exact_radians(term: sp.Expr) -> sp.Expr:
+    degrees = term / DEGREE
+    return without_decimals(degrees) * sp.pi / 180 if degrees.is_number else term
 
 
 def _with_exact_angle(factor: Factor) -> Factor:

@@ -22,8 +22,8 @@ from derive.description.mechanism import (
     on_plate,
     ring_rod,
 )
+from derive.description.substituted import with_symbols
 from derive.description.validate import validate
-from derive.form.inner_names import with_symbols
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.program import Status
