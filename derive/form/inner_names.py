@@ -14,8 +14,8 @@ from itertools import combinations
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of
+from derive.description.amounts import with_symbols
 from derive.description.mechanism import Joint, Mechanism, Parameter
-from derive.description.substituted import with_symbols
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
     BASE_AXIS,

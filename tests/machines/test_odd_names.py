@@ -10,8 +10,8 @@ import pytest
 import softkin
 from softkin import Status
 
+from derive.description.amounts import with_symbols
 from derive.description.mechanism import Mechanism
-from derive.description.substituted import with_symbols
 from derive.description.validate import validate
 from derive.emit.python.entries import OF_CLASS
 from derive.emit.softmotion.description import literal

@@ -156,7 +156,7 @@ PEN, SIDE = distance("pen", "pin to pen", nominal=50.0), signed_length("side", "
 AXES = tuple(rotary(f"A{k}", "arm") for k in (1, 2, 3))
 
 
-def delta(*degrees: int, unit: Expr = pi / 180) -> Mechanism:
+def delta(*degrees: Expr | float, unit: Expr = pi / 180) -> Mechanism:
     """A delta whose motors stand at these angles, in degrees; unit: how a degree is written."""
 
     def legs(axis: Expr, at: Expr) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
@@ -211,9 +211,13 @@ def test_a_loop_is_the_same_machine(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.quick
-def test_degrees_in_a_loop_are_radians() -> None:
-    """However an angle is written: of an angle that is no sum of right ones, the sines and cosines become exact."""
-    assert in_form(delta(0, 120, 250, unit=DEGREE)) == in_form(delta(0, 120, 250))
+def test_angles_in_a_loop_are_exact() -> None:
+    """In radians, in degrees, and as decimals that are its cosine and its sine."""
+    for degrees in ((0, 120, 250), (10, 100, 235), (45, 133.7, 260)):
+        stated = in_form(delta(*map(sp.Rational, map(str, degrees))))
+        assert in_form(delta(*map(sp.Rational, map(str, degrees)), unit=DEGREE)) == stated
+        decimals = in_form(delta(*degrees, unit=sp.Float(np.pi / 180))).equations
+        assert all(sp.expand(one - other) == 0 for one, other in zip(decimals, stated.equations, strict=True))
 
 
 def test_names_of_angles() -> None:

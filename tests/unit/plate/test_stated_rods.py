@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from derive.description.amounts import with_symbols
 from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import (
     ROTATION,
@@ -22,7 +23,6 @@ from derive.description.mechanism import (
     on_plate,
     ring_rod,
 )
-from derive.description.substituted import with_symbols
 from derive.description.validate import validate
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
