@@ -17,6 +17,7 @@ from derive.command.stages import Stages
 from derive.description.catalogue import load_with_variables
 from derive.description.mechanism import Mechanism
 from derive.faults import error
+from derive.form.inner_names import in_given_names
 from derive.ir.text import text_of
 from derive.kinematics.branches.derived import in_words
 from derive.kinematics.build import build
@@ -66,6 +67,12 @@ def explanation(mechanism: Mechanism, variables: Mapping[str, str] | None = None
             yield from _step(mechanism, step)
         raise
     derived = derived_of(solution)
+    for line in _derivation(derived, variables):
+        yield in_given_names(line, derived.mechanism)
+
+
+def _derivation(derived: Derived, variables: Mapping[str, str] | None) -> Iterator[str]:
+    """The lines of a machine that is derived, with its inner names."""
     if derived.searched is not None:
         where = f"Where {derived.where.given_name} is not 0, " if derived.where is not None else ""
         yield f"{where}{derived.searched.name} is searched for roots: a trial takes it as known."

@@ -2,7 +2,7 @@
 
 It may import `ir`, `algebra` and `geometry`. Mechanism files import it as `derive.mechanism` and its neighbours.
 
-amounts: the amounts of turns and shifts in a chain: right angles, and which are refused
+amounts: the amounts in a chain and in equations: exact angles, other symbols, and which are refused
 branches: branches and assembly modes: two solutions that the sign of an indicator tells apart
 catalogue: the mechanism files of a folder, loaded and checked
 dimensions: the parameters of a machine by their roles, and conditions between them

@@ -6,11 +6,14 @@ short of one, and stays as it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from itertools import combinations_with_replacement
+from typing import Any
 
 import sympy as sp
 
+from derive.description.dimensions import Parameter
 from derive.description.mechanism import Kind, Mechanism, Role
 from derive.geometry.frames import LETTERS, Chain, Factor, Motion
 from derive.ir.constants import DEGREE
@@ -21,6 +24,10 @@ _ANY_DECIMALS = 1e-6
 _LONG_DECIMALS = 1e-9
 """A decimal as near to a whole number of thousandths of a degree as this (radians) is that angle."""
 _THOUSANDTHS = 1000
+_UNIT = 1e-15
+"""Decimals whose squares differ from one by less than this, in their sum, are cosine and sine of one angle."""
+_WRITTEN = 10**6
+"""A decimal with at most six decimals is exact as it stands."""
 _DECIMALS = 4
 """A decimal with at least this many digits that equals a rounded multiple of 90° is that multiple."""
 _NEARLY = 0.01
@@ -109,11 +116,40 @@ def _wrong_shift(mechanism: Mechanism, factor: Factor) -> Iterator[str]:
 
 def with_exact_angles(mechanism: Mechanism) -> Mechanism:
     """The mechanism with the exact multiples of 90° in its chain, however they are written: `90*DEGREE`, `1.5708`; and
-    with the exact thousandths of a degree for long decimals, 22.5° for `0.3926990817`.
+    with the exact thousandths of a degree for long decimals, 22.5° for `0.3926990817`. In the equations of
+    a loop `120*DEGREE` becomes 2 pi/3.
     """
     if mechanism.chain is None:
-        return mechanism
+        return _with_exact_functions(mechanism)
     return replace(mechanism, chain=Chain(tuple(map(_with_exact_angle, mechanism.chain.factors))))
+
+
+def _with_exact_functions(mechanism: Mechanism) -> Mechanism:
+    stated = [sp.sympify(e) for e in (*mechanism.equations, *(b.indicator for b in mechanism.branches))]
+    functions = {f for e in stated for f in e.atoms(sp.sin, sp.cos)}
+    table = {f: f.func(sp.Add(*map(_in_exact_radians, sp.Add.make_args(sp.expand(f.args[0]))))) for f in functions}
+    decimals = {d for e in stated for d in e.atoms(sp.Float)} - {d for f in functions for d in f.atoms(sp.Float)}
+    table |= _as_functions(sorted((d for d in decimals if without_decimals(d).q > _WRITTEN), key=sp.Abs))
+    exact: Mechanism = with_symbols(mechanism, {f: g for f, g in table.items() if f != g})
+    return exact
+
+
+def _as_functions(decimals: Sequence[sp.Float]) -> dict[sp.Expr, sp.Expr]:
+    """Decimals that are cosine and sine of one angle, as these: the sum of their squares is then one, not rounded."""
+    found: dict[sp.Expr, sp.Expr] = {}
+    sizes = list(dict.fromkeys(map(abs, decimals)))
+    for sine, cosine in combinations_with_replacement(sizes, 2):
+        if abs(float(sine) ** 2 + float(cosine) ** 2 - 1) < _UNIT:
+            radians = float(sp.atan2(sine, cosine))
+            near = round(radians * 180 / float(sp.pi) * _THOUSANDTHS) * sp.pi / (180 * _THOUSANDTHS)
+            angle = near if abs(radians - float(near)) < _UNIT else sp.Rational(f"{radians:.15f}")
+            found = {sine: sp.sin(angle), cosine: sp.cos(angle)} | found
+    return {d: sp.sign(d) * found[abs(d)] for d in decimals if abs(d) in found}
+
+
+def _in_exact_radians(term: sp.Expr) -> sp.Expr:
+    degrees = term / DEGREE
+    return without_decimals(degrees) * sp.pi / 180 if degrees.is_number else term
 
 
 def _with_exact_angle(factor: Factor) -> Factor:
@@ -165,3 +201,19 @@ def almost_right(number: sp.Expr) -> str | None:
     exact = sp.sstr(sp.sign(value) * abs(nearest) * _RIGHT)
     literal = sp.sstr(number, full_prec=False)
     return f"{literal} is {abs(off):.1g} rad {side} {many}; write {exact} or {90 * nearest}*DEGREE"
+
+
+def with_symbols(value: Any, symbols: Mapping[Any, sp.Expr]) -> Any:
+    """A copy of nested data in which symbols are replaced."""
+    if isinstance(value, sp.Basic | sp.MatrixBase):
+        return value.xreplace(symbols)
+    if isinstance(value, tuple):
+        return tuple(with_symbols(one, symbols) for one in value)
+    if isinstance(value, Parameter) and value.symbol in symbols:
+        symbol = symbols[value.symbol]
+        return replace(value, symbol=symbol, name=symbol.name, given=value.given_name)
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
+        changed = {name: with_symbols(one, symbols) for name, one in own.items()}
+        return replace(value, **changed)
+    return value

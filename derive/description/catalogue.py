@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import traceback
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.machinery import SOURCE_SUFFIXES, ModuleSpec, SourceFileLoader
 from importlib.util import module_from_spec
@@ -60,17 +60,20 @@ def load_with_variables(path: Path) -> tuple[Mechanism, dict[str, str]]:
     """As `load`, and the variable of the file for the name of each joint and parameter that has one."""
     values = vars(_executed(path))
     variables = {value.name: word for word, value in values.items() if isinstance(value, Joint | Parameter)}
-    return _mechanism_of(path, values.get("MECHANISM")), variables
+    return _mechanism_of(path, values), variables
 
 
-def _mechanism_of(path: Path, mechanism: object) -> Mechanism:
-    """The mechanism of a file, validated."""
+def _mechanism_of(path: Path, values: Mapping[str, object]) -> Mechanism:
+    """The mechanism of a file with these variables, validated."""
+    mechanism = values.get("MECHANISM")
     if not isinstance(mechanism, Mechanism):
         raise DescriptionError(in_place(path, "defines no MECHANISM"))
     try:
         return validate(mechanism)
     except DescriptionError as problem:
-        raise DescriptionError(in_place(path, str(problem))) from None
+        names = {str(v.symbol): v.name for v in values.values() if isinstance(v, Joint | Parameter)}
+        said = re.sub(r"(?<= reads ')\w+", lambda found: names.get(found.group(), found.group()), str(problem))
+        raise DescriptionError(in_place(path, said)) from None
     except Exception as problem:  # an error that no check foresees also belongs to this file
         if _is_of_the_compiler(problem):
             raise

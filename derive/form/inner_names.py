@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import sympy as sp
 
 from derive.algebra.angle_sums import name_of
+from derive.description.amounts import with_symbols
 from derive.description.mechanism import Joint, Mechanism, Parameter
 from derive.ir.symbols import (
     ASSEMBLY_SIGN,
@@ -173,19 +173,3 @@ def _taken_joints(mechanism: Mechanism) -> set[str]:
         name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)
     }
     return sums | set(_SHARED)
-
-
-def with_symbols(value: Any, symbols: Mapping[sp.Symbol, sp.Symbol]) -> Any:
-    """A copy of nested data in which symbols are replaced."""
-    if isinstance(value, sp.Basic | sp.MatrixBase):
-        return value.xreplace(symbols)
-    if isinstance(value, tuple):
-        return tuple(with_symbols(one, symbols) for one in value)
-    if isinstance(value, Parameter) and value.symbol in symbols:
-        symbol = symbols[value.symbol]
-        return replace(value, symbol=symbol, name=symbol.name, given=value.given_name)
-    if is_dataclass(value) and not isinstance(value, type):
-        own = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
-        changed = {name: with_symbols(one, symbols) for name, one in own.items()}
-        return replace(value, **changed)
-    return value

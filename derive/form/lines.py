@@ -17,6 +17,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.description.amounts import in_radians, number_in, without_decimals
+from derive.form.numbers import is_right
 from derive.geometry.frames import Factor, Motion
 
 Array = NDArray[np.float64]
@@ -25,6 +26,8 @@ SAME = 1e-9
 _NEARLY = 1e-12
 """A share that differs less than this from a simple fraction is that fraction."""
 _SIMPLE = 1000
+_LOST = 2e-13
+"""In oblique frames a sum of numbers below this share of all of them is rounding: less than what the witness sees."""
 _DIGITS, _STATED = 14, 12
 """The decimal digits of a sum in oblique frames, relative to its terms: further ones are rounding. And those that a
 person states, at most.
@@ -51,15 +54,19 @@ class Arm:
     rotation: Array
     position: Array
     """3 x lengths."""
+    lost: float = 0.0
+    """A sum of numbers that is smaller than this is zero."""
 
     def amount(self, shares: Array) -> sp.Expr:
         """The sum of shares of the lengths: exact, if each is taken whole and stated, not computed."""
         total = sp.Integer(0)
         for kind in _kinds(self.lengths):
             own = [(s, a / kind) for s, a in zip(shares, self.lengths, strict=True) if _kind(a) == kind]
+            terms = [s * float(a) for s, a in own]
+            if kind == 1 and len(own) > 1 and abs(sum(terms)) < self.lost:
+                continue
             value = sp.Add(*[round(s) * a for s, a in own])
             if any(abs(s - round(s)) > _NEARLY for s, _ in own) or (len(own) > 1 and _is_computed(value)):
-                terms = [s * float(a) for s, a in own]
                 value = _without_rounding(float(np.sum(terms)), float(np.abs(terms).sum()))
             total += value * kind
         return sp.expand(total)
@@ -107,7 +114,9 @@ def arm_of(factors: Sequence[Factor]) -> Arm:
             number = number_in(factor.amount)
             add_line(lines, Line(sp.expand(factor.amount) - number, direction, position.copy()), lengths)
             rotation = rotation @ about(factor.axis, in_radians(number))
-    return Arm(lengths, tuple(lines), rotation, position)
+    is_oblique = any(f.motion is Motion.TURN and not is_right(number_in(f.amount)) for f in factors)
+    size = sum(float(length) for length in lengths if length.is_number)
+    return Arm(lengths, tuple(lines), rotation, position, _LOST * size * is_oblique)
 
 
 def _parts(amount: sp.Expr) -> dict[sp.Expr, float]:

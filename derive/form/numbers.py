@@ -12,10 +12,9 @@ from itertools import combinations, product
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in, without_decimals
+from derive.description.amounts import in_radians, number_in, with_symbols, without_decimals
 from derive.description.dimensions import Parameter, Role
 from derive.description.mechanism import Mechanism
-from derive.form.inner_names import with_symbols
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.symbols import Names, cosine, real, sine

@@ -86,6 +86,13 @@ def test_the_line_to_be_named_is_in_the_variables_of_the_file(folder: Folder) ->
     assert "every pose has one solution" in folder.run("explain", "my_polar.py").out
 
 
+def test_a_parameter_has_the_name_of_the_file_in_equations(folder: Folder) -> None:
+    """Inside the derivation it has another one: a name that the languages of controllers do not take."""
+    folder.write("my_polar.py", POLAR.replace("offset_of_slide", "OffsetOfSlide"))
+    said = folder.run("explain", "my_polar.py").out
+    assert "equation x: cos_a1*OffsetOfSlide + cos_a1*r - x = 0" in said and "given" not in said
+
+
 @pytest.mark.parametrize(
     ("file", "lines"),
     [

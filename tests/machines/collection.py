@@ -216,6 +216,24 @@ SEEN_FROM_A_KNOWN_FRAME = {
         DIRECTION,
         (branch("tilt", sin(A5 - A2), positive=+1, negative=-1), branch("telescope", R, ahead=+1, behind=-1)),
     ),
+    "telescope with a level head beside it": _machine(
+        "LevelTelescope",
+        Rz(A1) * Tx(PIVOT_X) * Ry(-A2) * Tx(L1 + R) * Ry(A2) * Ty(BESIDE) * Tz(-L4) * Rz(A4),
+        TURNED,
+        (
+            branch("shoulder", PIVOT_X + (L1 + R) * cos(A2), front=+1, back=-1),
+            branch("telescope", L1 + R, ahead=+1, behind=-1),
+        ),
+    ),
+    "level head beside an arm, on a quill": _machine(
+        "LevelQuill",
+        Rz(A1) * Ry(-A2) * Tx(L1) * Tz(PIVOT_X) * Ry(A2) * Ty(BESIDE) * Tz(Z) * Rz(A4),
+        TURNED,
+        (
+            branch("shoulder", L1 * cos(A2) - PIVOT_X * sin(A2), front=+1, back=-1),
+            branch("arm", L1 * sin(A2) + PIVOT_X * cos(A2), up=+1, down=-1),
+        ),
+    ),
 }
 
 TURNS_ABOUT_Y = {

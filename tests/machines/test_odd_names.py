@@ -10,12 +10,12 @@ import pytest
 import softkin
 from softkin import Status
 
+from derive.description.amounts import with_symbols
 from derive.description.mechanism import Mechanism
 from derive.description.validate import validate
 from derive.emit.python.entries import OF_CLASS
 from derive.emit.softmotion.description import literal
 from derive.emit.softmotion.inputs import wanted_name
-from derive.form.inner_names import with_symbols
 from derive.kinematics.build import build
 from derive.kinematics.parameters import machine_parameters
 from derive.pipeline import files_of, languages

@@ -6,6 +6,7 @@ known angle `heading`, by its sine and cosine.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -16,6 +17,7 @@ from derive.equations.chain_splits import Commanded, Split, Unknowns, is_spatial
 from derive.equations.closures.closure import Closure, arguments_of, named_equation
 from derive.equations.closures.fixed_names import all_angles, angles_of, signs_of, with_fixed_names
 from derive.equations.closures.stated import stated_closure
+from derive.equations.problem import Equation
 from derive.geometry.frames import Chain, Factor, Motion, Txyz
 from derive.geometry.pose import pose_of
 from derive.ir.program import Let
@@ -43,14 +45,23 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     """The closure of a commanded pose."""
     if mechanism.chain is None:
         return _with_heading(mechanism, stated_closure(mechanism, {}), mechanism.heading)
-    is_pitch = mechanism.followed_turns > 0
-    if is_pitch or (is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z):
-        return _spatial_closure(mechanism, mechanism.chain, mechanism.solved_joints, mechanism.task.turning)
-    pose = pose_of(mechanism.chain)
-    closure = _position_closure(mechanism, pose.position)
-    if mechanism.task.turning is Turning.NONE:
+    chain, turning = mechanism.chain, mechanism.task.turning
+    is_spaced, is_upright = is_spatial(chain), turning is Turning.ABOUT_Z
+    if mechanism.followed_turns or (is_spaced and not is_upright):
+        return _spatial_closure(mechanism, chain, mechanism.solved_joints, turning)
+    closure = _position_closure(mechanism, pose_of(chain).position)
+    if not is_upright:
         return closure
-    return _with_heading(mechanism, closure, heading_of(mechanism.chain))
+    seen = _spatial_closure(mechanism, chain, mechanism.solved_joints, Turning.NONE) if is_spaced else closure
+    beside = any(_is_beside(e, mechanism.solved_joints) for e in seen.equations)
+    return _with_heading(mechanism, seen if beside else closure, heading_of(chain))
+
+
+def _is_beside(equation: Equation, joints: Sequence[Joint]) -> bool:
+    """Whether an equation has one joint alone, a turn whose axis the point stays beside."""
+    found = [j for j in joints if equation.expression.free_symbols & {j.symbol, cosine(j.symbol), sine(j.symbol)}]
+    at_zero = {f(j.symbol): sp.Integer(0) for j in found for f in (cosine, sine)}
+    return len(found) == 1 and found[0].is_angle and equation.expression.xreplace(at_zero) != 0
 
 
 def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | None) -> Closure:
@@ -62,7 +73,7 @@ def _with_heading(mechanism: Mechanism, closure: Closure, argument: sp.Expr | No
         named_equation(mechanism, f"{word} heading", value - real(f"{word}_heading")) for word, value in parts
     )
     arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
-    return Closure(closure.equations + turns, arguments, closure.lets, closure.planes)
+    return replace(closure, equations=closure.equations + turns, arguments=arguments)
 
 
 @counted

@@ -50,7 +50,7 @@ def nominal(value: str) -> str:
 
 
 FAULTS = {
-    "a joint too few in the list": (written(joints="(A1, A2, Z1)"), "chain reads 'a4', which is not a joint or a par"),
+    "a joint too few in the list": (written(joints="(A1, A2, Z1)"), "chain reads 'A4', which is not a joint or a par"),
     "a joint too few in the chain": (chained("* Tz(Z1) ", ""), "joint 'Z1' occurs nowhere in"),
     "a joint listed twice": (written(joints="(A1, A1, Z1, A4)"), "joint 'A1' is given 2 times"),
     "a joint by its name": (chained("A1", '"A1"'), "TypeError: Rz('A1') needs a joint, a param"),

@@ -91,6 +91,19 @@ FORMS = {
         Rz(A1 + 1.57) * Tx(35) * Rz(A2),
         "Rz(a1 + 1.57) * Tx(35) * Rz(a2)",
     ),
+    "what twelve decimals of oblique frames leave is rounding": (
+        CHAINS["ball wrist"],
+        Rz(A1)
+        * Tz(90.364485984607)
+        * Tz(-90.364485984606)
+        * Rz(-0.001)
+        * Tx(-0.021999996333)
+        * Ty(21.999989000001)
+        * Rz(0.001)
+        * Ry(A2)
+        * Tz(LINK),
+        "Rz(a1) * Ry(a2) * Ty(22) * Tz(link)",
+    ),
     "a link stands in front of the turn behind it": (
         CHAINS["SCARA"],
         Rz(A1) * Tx(P1) * Rz(A2) * Tx(LINK) * Rz(0.5),
@@ -143,8 +156,8 @@ PEN, SIDE = distance("pen", "pin to pen", nominal=50.0), signed_length("side", "
 AXES = tuple(rotary(f"A{k}", "arm") for k in (1, 2, 3))
 
 
-def delta(*degrees: int) -> Mechanism:
-    """A delta whose motors stand at these angles, in degrees."""
+def delta(*degrees: Expr | float, unit: Expr = pi / 180) -> Mechanism:
+    """A delta whose motors stand at these angles, in degrees; unit: how a degree is written."""
 
     def legs(axis: Expr, at: Expr) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
         reach = BASE + ARM * cos(axis)
@@ -152,7 +165,7 @@ def delta(*degrees: int) -> Mechanism:
             X + PLATE * cos(at), Y + PLATE * sin(at), Z
         )
 
-    ends = [legs(axis, degree * pi / 180) for axis, degree in zip(AXES, degrees, strict=True)]
+    ends = [legs(axis, degree * unit) for axis, degree in zip(AXES, degrees, strict=True)]
     rods = tuple(rod(str(k), *end, ROD) for k, end in enumerate(ends, 1))
     return Mechanism("Own", AXES, Task("xyz"), parameters=(BASE, PLATE, ARM, ROD), rods=rods)
 
@@ -198,6 +211,15 @@ def test_a_loop_is_the_same_machine(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.quick
+def test_angles_in_a_loop_are_exact() -> None:
+    """In radians, in degrees, and as decimals that are its cosine and its sine."""
+    for degrees in ((0, 120, 250), (10, 100, 235), (45, 133.7, 260)):
+        stated = in_form(delta(*map(sp.Rational, map(str, degrees))))
+        assert in_form(delta(*map(sp.Rational, map(str, degrees)), unit=DEGREE)) == stated
+        decimals = in_form(delta(*degrees, unit=sp.Float(np.pi / 180))).equations
+        assert all(sp.expand(one - other) == 0 for one, other in zip(decimals, stated.equations, strict=True))
+
+
 def test_names_of_angles() -> None:
     """10 degrees and 100 degrees have one name, and so have 35 and 235; 60 degrees are roots, and need none."""
     named = [p.name for p in in_form(LOOPS["motors that share an angle"]).parameters if p.fixed is not None]

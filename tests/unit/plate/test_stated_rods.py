@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from derive.description.amounts import with_symbols
 from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import (
     ROTATION,
@@ -23,7 +24,6 @@ from derive.description.mechanism import (
     ring_rod,
 )
 from derive.description.validate import validate
-from derive.form.inner_names import with_symbols
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.program import Status
