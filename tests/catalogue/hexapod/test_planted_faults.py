@@ -44,7 +44,7 @@ WRONG = {
     "the other assembly mode": Break(_SEARCH, "determinant > 0.0", "determinant < 0.0"),
     "two outputs exchanged": Break(_FORWARD, "v.dX := platform.v.dX;\nv.dY := platform.v.dY;",
         "v.dX := platform.v.dY;\nv.dY := platform.v.dX;"),
-    "another start": Break("PROTECTED ReadInputs", "home.v.dX := dHomeX", "home.v.dX := dHomeX + 1.0E6"),
+    "another start": Break("METHOD PROTECTED ReadInputs", "home.v.dX := dHomeX", "home.v.dX := dHomeX + 1.0E6"),
     "a refusal that is not handed on": Break(_FORWARD, ":= outcome;",
         ":= Softkin_Names.NoError;"),
     "a column of the Jacobian": Break(_JACOBIAN, "coefficients[2, 4] := platform.moment2.dX",

@@ -9,7 +9,7 @@ import pytest
 from derive.description.catalogue import load
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.faults import Failure
-from derive.pipeline import WRITTEN, _attempt
+from derive.pipeline import _attempt
 
 HEAD = """from sympy import cos, sin, pi, sqrt
 from derive.frames import Rx, Ry, Rz, Tx, Ty, Tz, denavit_hartenberg
@@ -164,7 +164,7 @@ def test_the_fault_is_told(fault: str, tmp_path: Path) -> None:
     path.write_text(text)
     start = time.process_time()
     try:
-        answer = _attempt(None, WRITTEN, (path, load(path)))
+        answer = _attempt(None, (path, load(path)))
         told = answer.message if isinstance(answer, Failure) else ""
     except DescriptionError as problem:
         told = str(problem)
