@@ -16,8 +16,6 @@ from derive.ir.symbols import is_decided
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
 _PIVOT, _SOLVABLE = float(PIVOT), float(SOLVABLE)
-_FEW = 8
-"""Up to this many systems of equations are solved one by one, which is faster than with arrays."""
 
 
 class Root(sp.Function):
@@ -175,8 +173,6 @@ def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
     """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable:
     zeros.
     """
-    if 0 < matrix[0, 0].size <= _FEW:
-        return _solved_one_by_one(matrix, right)
     matrix, right, size = matrix.copy(), right.copy(), len(matrix)
     largest, most = np.max(np.abs(matrix), axis=(0, 1)), _SOLVABLE
     tiny = _PIVOT * largest
@@ -201,18 +197,8 @@ def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
     return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)
 
 
-def _solved_one_by_one(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """`solve` with Python's own numbers, which round like those of arrays."""
-    size, columns, *shape = right.shape
-    count = matrix[0, 0].size
-    systems = np.concatenate([matrix, right], axis=1).reshape(size, size + columns, count)
-    answers = [solved(systems[:, :, k].tolist(), size) for k in range(count)]
-    solution = np.array([rows for _, rows in answers]).reshape(count, size, columns)
-    return np.array([d for d, _ in answers]).reshape(shape), np.moveaxis(solution, 0, -1).reshape(right.shape)
-
-
 def solved(rows: list[list[float]], size: int) -> tuple[float, list[list[float]]]:
-    """Determinant and solution of one system; every row ends in its right-hand sides."""
+    """`solve` of one system with Python's own numbers, which round like arrays; a row ends in its right-hand sides."""
     nothing, most = (0.0, [[0.0] * len(row[size:]) for row in rows]), _SOLVABLE
     largest, determinant = max(abs(v) for row in rows for v in row[:size]), 1.0
     if largest < 1.0 / most or not all(abs(v) <= most for row in rows for v in row):  # also false for NaN
