@@ -17,7 +17,7 @@ import sympy as sp
 
 from derive.ir.constants import DEGREE
 from derive.ir.primitives import VALUES, Root, Select, ToReal, solved
-from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement
+from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement
 from derive.ir.symbols import Flag, is_count, is_decided
 from derive.kept import kept_by_identity
 
@@ -29,6 +29,8 @@ _TEXTS = {
     sp.Not: "(not {})", Select: "({1} if {0} else {2})", ToReal: "float({})", sp.Abs: "abs({})",
     Root: "sqrt(max({}, 0.0))",
 }  # fmt: skip
+
+_DEEP = 50
 
 
 class Refused(Exception):
@@ -55,7 +57,7 @@ def function_of(program: Program) -> Function:
     """Repeats, and the values of `program.inputs` → those of its outputs. Raises `Refused`."""
     writer = _Writer(program)
     lines = [f"def function(repeats, {', '.join(map(writer.name, program.inputs))}):", *writer.block(program.body)]
-    lines.append(f"    return ({''.join(writer.text(o.value) + ', ' for o in program.outputs)})")
+    lines += writer.returned(program.outputs)
     exec(compile("\n".join(lines), f"<{program.name}>", "exec"), writer.known)  # noqa: S102 (our own text, of no file)
     return writer.known["function"]  # type: ignore[no-any-return]
 
@@ -69,6 +71,8 @@ class _Writer:
         }  # fmt: skip
         self._names: dict[str, str] = {}
         self._free = count()
+        self._before: list[str] = []
+        """The lines of what is nested too deeply, to stand before the line that reads it."""
 
     def name(self, symbol: sp.Symbol) -> str:
         return self._names.setdefault(symbol.name, f"v{len(self._names)}")
@@ -83,7 +87,15 @@ class _Writer:
         yield f"{indent}repeats.steps += {len(statements)}"
         for statement in statements:
             for line in self._lines(statement):
+                inner = indent + line[: len(line) - len(line.lstrip())]
+                yield from (inner + one for one in self._before)
+                self._before.clear()
                 yield indent + line
+
+    def returned(self, outputs: Sequence[Output]) -> Iterator[str]:
+        values = "".join(self.text(o.value) + ", " for o in outputs)
+        yield from (f"    {one}" for one in self._before)
+        yield f"    return ({values})"
 
     def _lines(self, statement: Statement) -> Iterator[str]:
         if isinstance(statement, Let):
@@ -143,15 +155,19 @@ class _Writer:
         if loop.otherwise is not None:
             yield f"else: raise Refused({self.given(loop.otherwise)})"
 
-    def text(self, value: sp.Basic) -> str:
-        """An expression in Python."""
+    def text(self, value: sp.Basic, depth: int = 0) -> str:
+        """An expression in Python, whose parser reads at most 200 brackets in each other."""
+        if depth == _DEEP:
+            word = f"deep_{next(self._free)}"
+            self._before.append(f"{word} = {self.text(value)}")
+            return word
         if isinstance(value, sp.Symbol) and value != DEGREE:
             return self.name(value)
         if is_decided(value):
             return str(value == sp.true)
         if value == DEGREE or isinstance(value, sp.Number | sp.NumberSymbol):
             return f"({np.pi / 180.0 if value == DEGREE else float(value)!r})"
-        kind, parts = type(value), [self.text(a) for a in value.args]
+        kind, parts = type(value), [self.text(a, depth + 1) for a in value.args]
         if kind in _BETWEEN:
             return f"({_BETWEEN[kind].join(parts)})"
         if kind in _TEXTS:

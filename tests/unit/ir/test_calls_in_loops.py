@@ -11,7 +11,8 @@ import sympy as sp
 
 from derive.emit.page.lines import Lines
 from derive.emit.page.names import Spelling
-from derive.ir.interpret import Repeats, repeats_counted, run
+from derive.ir.interpret import repeats_counted, run
+from derive.ir.one_row import Repeats
 from derive.ir.passes import normalise
 from derive.ir.program import Call, Iterate, Let, Output, Program, shared
 from derive.ir.symbols import real

@@ -4,10 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from derive.ir import interpret
 from derive.ir.interpret import Array, run
-from derive.ir.program import Program, Status
+from derive.ir.passes import normalise
+from derive.ir.program import Iterate, Let, Output, Program, Status
+from derive.ir.symbols import real
 from derive.report import reference_calls
 from derive.report.self_test import self_test
 from tests.mechanisms import kinematics_of, named
@@ -36,3 +39,16 @@ def test_rows_are_those_of_arrays(name: str, monkeypatch: pytest.MonkeyPatch) ->
     self_test(kinematics)
     assert statuses.count(Status.OK) > 10
     assert {*statuses} > {Status.OK}
+
+
+def test_values_may_be_nested_deeply() -> None:
+    """In a statement of a loop, in where it ends, and in an output."""
+    x, y, deep = real("x"), real("y"), real("x")
+    for _ in range(90):
+        deep = sp.Abs(deep + y) * 2 - y
+    loop = Iterate((x,), (y,), (Let(real("z"), deep),), (real("z"),), sp.Gt(deep, -1), 3, None)
+    program = normalise("nested", [loop], [Output("found", real("z") + deep)])
+    found, said = run(program, {"y": np.array([1e-150])})
+    assert said.tolist() == [Status.OK]
+    with_arrays, _ = run(program, {"y": np.full(1000, 1e-150)})
+    assert found["found"][0] == with_arrays["found"][0] > 0.0
