@@ -65,7 +65,7 @@ def derive(options: argparse.Namespace) -> int:
             replace_parts(folder, data)
         elif any(differences(folder, data)):
             replace_beside_others(folder, data)
-        stages.report("write", f"{len(data)} files in {folder}" if len(data) > 1 else str(folder / next(iter(data))))
+        stages.report("write", str(folder / next(iter(data))) if len(data) == 1 else f"{len(data)} files in {folder}")
         for hint in _next(path, folder, package, data):
             stages.line(f"  {hint}")
 

@@ -171,12 +171,11 @@ def _loops_of(joint: Joint, factors: Sequence[Mapping[str, Any]], values: _Value
 
 def _loop(mechanism: Mechanism, values: _Values) -> dict[str, Any]:
     bars, joints = bars_of(mechanism), {j.symbol for j in mechanism.joints}
-    rods = []
+    rods: list[dict[str, Any]] = []
     for bar in bars:
         drives = [j.name for j in mechanism.joints if j.symbol in bar.length.free_symbols]
-        rods.append(
-            {"name": bar.name, "start": values.point(bar.base), "end": values.point(bar.plate), "joints": drives}
-        )
+        ends = {"start": values.point(bar.base), "end": values.point(bar.plate)}
+        rods.append({"name": bar.name, **ends, "joints": drives, "isCable": bar.only_pulls})
     held: list[int] = []
     shape: dict[str, Any] = {
         "kind": "loop", "isParallel": is_held_by_parallelograms(mechanism), "rods": rods, "cranks": [], "rails": [],

@@ -15,7 +15,7 @@ const POINT = new ConeGeometry(1, 1, 24);
 const UP = new Vector3(0, 1, 0);
 
 /** Radii and sizes over the size of the machine. */
-const THICK = { base: 0.02, link: 0.022, rod: 0.009, plate: 0.011, tool: 0.01 };
+const THICK = { base: 0.02, link: 0.022, rod: 0.009, cable: 0.003, plate: 0.011, tool: 0.01 };
 const BARREL = { radius: 0.034, length: 0.1 };
 const TABLE = { radius: 0.1, length: 0.03 };
 const TRUNNION = { radius: 0.03, length: 0.24 };
@@ -86,7 +86,7 @@ export class Figure {
     scene.bodies.forEach((body, i) => {
       if (hidden.has(body) || (this.isGhost && body.kind === "base")) return;
       const material = refused(body) ? "refused" : body.kind;
-      const thick = size * THICK[body.kind] * (this.isGhost ? GHOST : 1);
+      const thick = size * THICK[body.isCable ? "cable" : body.kind] * (this.isGhost ? GHOST : 1);
       const isSpindle = isTool && i === scene.bodies.length - 2;
       const isBed = ["table", "trunnion"].includes(shapes[scene.joints.findIndex((joint) => joint.body === i)]);
       body.lines.forEach(([start, end], k) => {
@@ -97,6 +97,7 @@ export class Figure {
       if (body.kind === "base" && !body.lines.length) this.#foot(body.frame.position, size, shapes[0]);
       if (body.kind === "tool") this.#tool(body.frame, size, material);
       for (const joint of scene.joints.filter((one) => one.body === i)) {
+        if (body.isCable) continue;
         if (body.kind === "rod") this.#cylinder(body, joint, size, refused(body));
         else this.#joint(joint, shapes[scene.joints.indexOf(joint)], size, refused(body), scene);
       }

@@ -3,7 +3,7 @@
 import os
 
 MOST = 4000 if os.environ["SOFTKIN_CORE"] == "native" else 200
-STEPS = (1, 3, 5, 7, 13, 23, 47, 97)
+STEPS = (1, 3, 5, 7, 13, 23, 47, 97, 193)
 """Primes, so that a share has every joint at each of four right angles, and every way from a corner."""
 
 

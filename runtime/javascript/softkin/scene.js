@@ -4,7 +4,7 @@
  * @typedef {{name: string, kind: string, joints: string[], frame: {position: number[], rotation: number[][]},
  *   lines: number[][][]}} Body - kind: "base", "link", "rod", "plate" or "tool"; joints: the axes that move it against
  *   the body before it; frame: fixed in the body, its rotation by rows; lines: pairs of points of the body, in the
- *   frame of the machine. Two parallel rods that hold a plate have one name
+ *   frame of the machine. Two parallel rods that hold a plate have one name; a rod has isCable, too
  * @typedef {{joints: string[], kind: string, at: number[], axis: number[], body: number, travel: number}} Joint - kind:
  *   "turn" or "slide"; axis: of length one, a positive joint value turns counter-clockwise about it or moves along it;
  *   body: the number of the body that it moves; travel: of a slide, its way from `at - travel axis` to `at`
@@ -154,7 +154,7 @@ function loopOf(parts, values, tool) {
     for (const side of sides) {
       const line = [plus(start, side), plus(end, side)];
       const frame = { position: line[0], rotation: frameAlong(axis, across) };
-      add({ name: rod.name, kind: "rod", joints: rod.joints, frame, lines: [line] }, joint);
+      add({ name: rod.name, kind: "rod", isCable: rod.isCable, joints: rod.joints, frame, lines: [line] }, joint);
     }
   }
   add({ name: "plate", kind: "plate", joints: [], frame: tool, lines: [...ringOf(plate), ...spokes] });

@@ -191,7 +191,7 @@ class Frame(_Parts):
             import numpy as np
 
             return np.asarray(other, np.float64) @ np.asarray(base).T + self.position
-        if isinstance(other, tuple | list) and len(other) == 3 and not any(isinstance(v, Iterable) for v in other):
+        if isinstance(other, tuple | list) and not any(isinstance(v, Iterable) for v in other):
             return plus(self.position, turned(base, _place(other)))
         position, rotation = Frame.of(other)
         return Frame(plus(self.position, turned(base, position)), product(base, rotation))

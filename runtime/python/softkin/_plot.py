@@ -50,8 +50,12 @@ def machine(robot: Mechanism, axes: Reals, ax: Any = None) -> Any:
     ends = [(min(column), max(column)) for column in zip(*points, strict=True)]
     size = max(high - low for low, high in ends) or 1.0
     ax.plot(*_columns([(line.start, line.end) for line in lines]), color="#8a95a3", linewidth=4, solid_capstyle="round")
-    for start in dict.fromkeys(line.start for line in lines if line.name):
-        names = dict.fromkeys(line.name for line in lines if line.name and line.start == start)
+    first: dict[str, Vector] = {}
+    for line in lines:
+        first.setdefault(line.name, line.start)
+    first.pop("", None)
+    for start in dict.fromkeys(first.values()):
+        names = [name for name in first if first[name] == start]
         ax.text(*start, f" {' '.join(names)}", color="#1d5fa8")
     for column, colour in zip(zip(*rotation, strict=True), ("#c0392b", "#2e8b57", "#1d5fa8"), strict=True):
         end = tuple(p + _ARROW * size * c for p, c in zip(position, column, strict=True))

@@ -182,6 +182,8 @@ def test_a_plot_shows_the_lines_and_the_values() -> None:
     assert np.allclose(drawn, ends(lines_of(arm, axes)))
     assert {"A1", "A5 A6"} <= {text.get_text().strip() for text in shown.texts}
     assert arm.plot(axes, shown) is shown
+    delta = softkin.DeltaC(base_radius=140.0, arm_length=200.0, rod_length=450.0, plate_radius=45.0)
+    assert sorted(t.get_text().strip() for t in delta.plot((10.0, 20.0, 30.0, 40.0)).texts) == ["A1", "A2", "A3", "A4"]
     frame = arm.forward(axes)[0]
     path = arm.line(frame, frame.shifted(2000.0), None, axes, samples=20)
     graph = path.plot()
