@@ -59,5 +59,5 @@ def _sides(equation: sp.Expr) -> tuple[sp.Symbol, sp.Expr, dict[sp.Symbol, sp.Ex
 
 
 def _at_nominal(mechanism: Mechanism, value: sp.Expr) -> sp.Expr:
-    nominal = {q.symbol: sp.Float(q.nominal) for q in (*mechanism.parameters, *mechanism.joints)}
-    return value.xreplace(nominal | {DEGREE: sp.pi / 180}).evalf()
+    nominal = {p.symbol: sp.Float(p.nominal) for p in mechanism.parameters} | {DEGREE: sp.pi / 180}
+    return value.xreplace(nominal | {j.symbol: sp.Float(j.nominal) for j in mechanism.joints}).evalf()
