@@ -11,4 +11,5 @@ inner_names: the names that the inputs of a machine have inside a derivation
 lines: a chain as lines of its zero pose, and the point of every turn on its line
 machine: all rules, in their order; rods that end at the commanded point
 numbers: names for the numbers of a chain, and for the angles of a loop, whose numbers become exact
+roots: roots in the equations of a loop, squared
 """

@@ -13,6 +13,7 @@ from derive.form.chain import with_normal_chain
 from derive.form.gears import with_gears
 from derive.form.inner_names import with_inner_names
 from derive.form.numbers import with_exact_numbers, with_named_loop_angles, with_named_numbers
+from derive.form.roots import with_squared_roots
 from derive.ir.symbols import COORDINATE_NAMES, real
 
 _COORDINATES = tuple(map(real, COORDINATE_NAMES))
@@ -25,7 +26,7 @@ def in_form(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> M
     """
     own = with_normal_chain(with_exact_angles(with_inner_names(mechanism, further)))
     geared = with_gears(own)  # a turn written in two parts is one by now
-    return with_named_numbers(with_named_loop_angles(with_plain_rods(with_exact_numbers(geared))))
+    return with_named_numbers(with_named_loop_angles(with_plain_rods(with_squared_roots(with_exact_numbers(geared)))))
 
 
 def with_plain_rods(mechanism: Mechanism) -> Mechanism:

@@ -9,6 +9,7 @@ coordinate of t. The rod or plane that is found must have the stated equation: b
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypeVar
@@ -28,27 +29,35 @@ _LONG = 10**6
 
 
 def with_stated_rods(mechanism: Mechanism) -> Mechanism:
-    """The mechanism, with rods and planes in place of those closure equations of a turning platform that are such."""
-    if not mechanism.is_platform:
-        return mechanism
+    """The mechanism, with rods in place of those closure equations that are such, and planes where the loop turns a
+    platform. Other equations are divided by the coefficient of their squares.
+    """
     taken = {rod.key for rod in mechanism.rods} | {plane.key for plane in mechanism.guides}
     found: list[Rod | Plane] = []
     left: list[sp.Expr] = []
     for number, equation in enumerate(mechanism.closure, 1):
         name = str(number) if not {str(number), f"guide_{number}"} & taken else f"closure_{number}"
         stated = sp.sympify(equation)
-        read = _rod_of(mechanism, name, stated) or _plane_of(mechanism, name, stated)
-        read = read or _rod_at_half_turns(mechanism, name, stated)
+        read: Rod | Plane | None = _rod_of(mechanism, name, stated)
+        if mechanism.is_platform:
+            read = read or _plane_of(mechanism, name, stated) or _rod_at_half_turns(mechanism, name, stated)
         if read is None:
-            left.append(equation)
+            left.append(stated if mechanism.is_platform else _divided(mechanism, stated))
         else:
             found.append(read)
     rods = tuple(one for one in found if isinstance(one, Rod))
     guides = tuple(one for one in found if isinstance(one, Plane))
-    if not found:
-        return mechanism
     own = replace(mechanism, rods=(*rods, *mechanism.rods), guides=(*guides, *mechanism.guides))
     return replace(own, closure=tuple(left))
+
+
+def _divided(mechanism: Mechanism, equation: sp.Expr) -> sp.Expr:
+    """The equation, divided by the coefficient of its squares where that is made of numbers and parameters."""
+    exact = sp.expand(equation.xreplace({number: sp.Rational(number) for number in equation.atoms(sp.Float)}))
+    factors = (sp.factor(exact.coeff(c, 2)) for c in _ORIGIN)
+    factor = next((f for f in factors if f != 0), sp.Integer(1))
+    is_constant = factor.free_symbols <= {p.symbol for p in mechanism.parameters}
+    return sp.expand(exact / factor) if factor != 1 and is_constant else equation
 
 
 def with_free_twist(mechanism: Mechanism) -> Mechanism:
@@ -101,7 +110,7 @@ def _plane_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Plane | Non
 
 def _is_flat(mechanism: Mechanism, equation: sp.Expr) -> bool:
     """Whether an equation holds in a plane: no z occurs in it."""
-    return mechanism.task.turning is Turning.ABOUT_Z and real("z") not in equation.free_symbols
+    return mechanism.task.turning in (Turning.ABOUT_Z, Turning.NONE) and real("z") not in equation.free_symbols
 
 
 def _rod_at_half_turns(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
@@ -162,21 +171,28 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     factor = form.coeff_monomial(coordinates[0] ** 2)
     if factor == 0 or factor.free_symbols & {j.symbol for j in mechanism.joints}:
         return None
-    base = [-form.coeff_monomial(c) / (2 * factor) for c in coordinates]
+    base = [sp.cancel(-form.coeff_monomial(c) / (2 * factor)) for c in coordinates]
     arm = _arm(form, coordinates, size, is_about_z=is_about_z)
     plate = on_plate(*(a / (2 * factor) for a in arm))
     at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
     between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
     square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
     length = _root_of(mechanism, square)
-    if length is None:
+    if length is None or not (mechanism.is_platform or _has_a_sign(mechanism, length)):
         return None
     read = rod(name, [_plain(v) for v in base], [_plain(v) for v in plate], _plain(length))
-    return read if _is_same(mechanism, read.equation * factor, equation) else None
+    return read if _is_same(mechanism, read.equation, equation / factor) else None
+
+
+def _has_a_sign(mechanism: Mechanism, length: sp.Expr) -> bool:
+    """Whether no joint can turn round the sign of a length: a square alone would allow both."""
+    return length in mechanism.positive or not length.free_symbols & {j.symbol for j in mechanism.joints}
 
 
 def _root_of(mechanism: Mechanism, square: sp.Expr) -> sp.Expr | None:
     """The length with this square; None where joints are left in a root."""
+    if square.is_Rational and square.q > _LONG and square > 0 and not sp.sqrt(square).is_Rational:
+        return sp.Rational(math.sqrt(square))  # the root of decimals that were multiplied
     length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True).replace(sp.Abs, lambda of: of)
     joints = {j.symbol for j in mechanism.joints}
     if length.has(sp.I) or any(p.exp == sp.Rational(1, 2) and p.free_symbols & joints for p in length.atoms(sp.Pow)):
@@ -194,8 +210,9 @@ def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
 
 
 def _plain(value: sp.Expr) -> sp.Expr:
-    """The value with long fractions as floating-point numbers again."""
-    return value.xreplace({r: sp.Float(r) for r in value.atoms(sp.Rational) if r.q > _LONG})
+    """The value with long fractions as the decimals that they are but for rounding, else as floating-point numbers."""
+    decimals = {r: sp.Rational(f"{float(r):.15g}") for r in value.atoms(sp.Rational) if r.q > _LONG}
+    return value.xreplace({r: short if short.q <= _LONG else sp.Float(r) for r, short in decimals.items()})
 
 
 def _about_z() -> dict[sp.Symbol, sp.Expr]:

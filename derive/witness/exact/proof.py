@@ -10,13 +10,14 @@ from random import Random
 
 import sympy as sp
 
-from derive.description.amounts import as_right_angles, number_in, with_exact_angles, without_decimals
+from derive.description.amounts import with_exact_angles
 from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.geometry.frames import Motion
 from derive.ir.program import Program
 from derive.ir.symbols import MIN_TYPE2_MARGIN, ROTATION_ENTRIES
 from derive.kinematics.kinematics import Exact, Kinematics
 from derive.witness.disagreement import Disagreement
+from derive.witness.exact.described import as_fractions, is_rounded
 from derive.witness.exact.field import PRIME, NoRoot, Pair, on_circle, root
 from derive.witness.exact.runs import Known, Run, Signs, evaluated
 from derive.witness.exact.values import ONE, ZERO, Angles, Fractional, NotAlgebraic, NotPlanted, Value, fraction
@@ -136,35 +137,17 @@ def check_exactly(kin: Kinematics, described: Mechanism) -> Exact:
         return Exact(0, "with deviations, the inverse ends in steps on the closure")
     if kin.mechanism.drives:
         return Exact(0, "loops move joints of its chain")
-    described = _with_exact_ends(with_exact_angles(as_in(kin.mechanism, described)))
+    described = as_fractions(with_exact_angles(as_in(kin.mechanism, described)))
     try:
         return _checked(kin, described)
     except Disagreement:
-        if not _is_rounded(kin.mechanism, described):
+        if not is_rounded(kin.mechanism, described):
             raise
     try:
         exact = _checked(kin, kin.mechanism)
     except Disagreement:
         return Exact(0, _ROUNDED)
     return replace(exact, but=_ROUNDED, what="equations of the machine's form") if exact.trials else exact
-
-
-def _with_exact_ends(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with fractions for the decimals at the ends of its rods, which their equations subtract."""
-    ends = [(tuple(map(without_decimals, r.base)), tuple(map(without_decimals, r.plate))) for r in mechanism.rods]
-    rods = (replace(r, base=b, plate=p) for r, (b, p) in zip(mechanism.rods, ends, strict=True))
-    return replace(mechanism, rods=tuple(rods))
-
-
-def _is_rounded(machine: Mechanism, described: Mechanism) -> bool:
-    """Whether numbers of the machine were computed of those of the description, other than by sums."""
-    if described.chain is None:
-        return any(sp.sympify(e).has(sp.Float) for e in machine.equations)
-    turns = [number_in(f.amount) for f in described.chain.factors if f.motion is Motion.TURN]
-    shifts = [f.amount for f in described.chain.factors if f.motion is Motion.SHIFT]
-    powers = [p for a in shifts for p in a.atoms(sp.Pow, sp.Function) if p.is_number and p.as_base_exp()[0] != sp.pi]
-    fixed = [p for p in machine.parameters if p.fixed is not None and p.role is Role.ANGLE]
-    return bool(powers or fixed) or any(as_right_angles(n) is None for n in turns)
 
 
 def _checked(kin: Kinematics, described: Mechanism) -> Exact:

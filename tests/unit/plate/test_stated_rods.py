@@ -1,6 +1,7 @@
 """Turning loops stated without rods, with cones of their joints, and with a home pose that is a length."""
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from derive.description.mechanism import (
     ROTATION,
     DescriptionError,
     Mechanism,
+    Rod,
     Task,
     Turning,
     X,
@@ -24,15 +26,19 @@ from derive.description.mechanism import (
     ring_rod,
 )
 from derive.description.validate import validate
+from derive.form.roots import with_squared_roots
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import run
 from derive.ir.program import Status
 from derive.ir.symbols import real
 from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
 from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD
 from derive.plate.stated_rods import with_free_twist, with_positive_lengths, with_stated_rods
+from derive.witness import witness
 from tests.mechanisms import kinematics_of, named
+from tests.unit.form.test_chain import SIDE, delta, pen_arm
 from tests.unit.kinematics.test_turning_inventions import TURNING_INVENTIONS, three_prr, three_rpr
 
 MACHINES = {
@@ -76,6 +82,62 @@ def test_an_equation_in_the_frame_of_the_plate_is_read_too(radius: sp.Expr) -> N
     (read,) = with_stated_rods(machine).rods
     assert read == ring_rod("1", (300, 40, 900), on_plate(0, 0, 7), radius, STRUT) if radius else read.ring is None
     assert FREE_TWIST in with_free_twist(with_stated_rods(machine)).guides
+
+
+WORDS: dict[str, Callable[[Rod], sp.Expr]] = {
+    "the squares": lambda r: r.equation,
+    "a multiple in decimals": lambda r: -0.3 * r.equation,
+    "multiplied out, over the length": lambda r: sp.expand(r.equation / r.length),
+    "a root": lambda r: r.length - sp.sqrt(r.equation + r.length**2),
+    "a multiple of a root": lambda r: 2 * sp.sqrt(r.equation + r.length**2) - 2 * r.length,
+}
+STRUTS = tuple(linear(f"S{k}", "strut", domain=(0.0, 1e9), nominal=400.0) for k in (1, 2))
+FIVE_BAR = pen_arm(sp.Integer(0))
+METRES = {p.symbol: sp.Float(p.nominal / 1000) for p in FIVE_BAR.parameters}
+POINTED = {
+    "a delta": delta(0, 120, 240),
+    "a five-bar": FIVE_BAR,
+    "a five-bar in metres": replace(FIVE_BAR, parameters=(), rods=with_symbols(FIVE_BAR.rods, METRES)),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("words", WORDS)
+@pytest.mark.parametrize("name", POINTED)
+def test_a_point_is_held_by_rods_in_whatever_words(name: str, words: str) -> None:
+    """The program of every wording is that of the rods, and meets the equations as they are written."""
+    own = POINTED[name]
+    other = replace(own, rods=(), closure=tuple(map(WORDS[words], own.rods)))
+    kin = build(validate(other))
+    assert kin.branch == build(validate(own)).branch
+    assert witness(kin, other).poses
+
+
+@pytest.mark.long
+def test_a_root_says_which_sign_a_strut_has() -> None:
+    """Squares allow both signs, whatever they are multiplied by; a root is the rod."""
+    squares = [(X - 500 * k) ** 2 + Y**2 for k in range(2)]
+
+    def built(*closure: sp.Expr) -> Kinematics:
+        machine = Mechanism("Bipod", STRUTS, Task("xy"), closure=closure)
+        kin = build(validate(machine))
+        assert witness(kin, machine).poses
+        return kin
+
+    pairs = list(zip(squares, STRUTS, strict=True))
+    assert built(*(3 * (e - s**2) for e, s in pairs)).branch == built(*(e - s**2 for e, s in pairs)).branch
+    rooted = built(*(sp.sqrt(e) - s for e, s in pairs)).mechanism
+    assert rooted.closure == () and rooted.positive == tuple(r.length for r in rooted.rods)
+
+
+@pytest.mark.parametrize("side", [SIDE, RING - 50])
+def test_a_root_of_either_sign_is_refused(side: sp.Expr) -> None:
+    closure = (X - STRUTS[0], sp.sqrt(X**2 + Y**2) - side)
+    machine = Mechanism("Bipod", STRUTS, Task("xy"), parameters=(RING, SIDE), closure=closure)
+    with pytest.raises(
+        DescriptionError, match=r"equation 2 of closure= says that a root is .*not known to be positive"
+    ):
+        with_squared_roots(machine)
 
 
 @pytest.mark.long
