@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from os import PathLike
-from sys import modules
+from sys import modules as _modules
 from typing import TYPE_CHECKING, Any
 
 from softkin._calibrated import Calibrated
@@ -322,7 +322,7 @@ if not TYPE_CHECKING:  # a type checker reads the imports above instead, and so 
         """Load what is not loaded yet."""
         if name in _MODULES:
             return _load(name)
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=modules[__name__])
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}", name=name, obj=_modules[__name__])
 
 
 def __dir__() -> list[str]:

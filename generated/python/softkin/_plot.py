@@ -51,7 +51,10 @@ def machine(robot: Mechanism, axes: Reals, ax: Any = None) -> Any:
     ends = [(min(column), max(column)) for column in zip(*points, strict=True)]
     size = max(high - low for low, high in ends) or 1.0
     ax.plot(*_columns([(line.start, line.end) for line in lines]), color="#8a95a3", linewidth=4, solid_capstyle="round")
-    first = {line.name: line.start for line in reversed(lines) if line.name}
+    first: dict[str, Vector] = {}
+    for line in lines:
+        first.setdefault(line.name, line.start)
+    first.pop("", None)
     for start in dict.fromkeys(first.values()):
         names = [name for name in first if first[name] == start]
         ax.text(*start, f" {' '.join(names)}", color="#1d5fa8")
