@@ -11,7 +11,7 @@ from derive.mechanisms.kin_ac6_rzryryrxryrz_j6offset import MECHANISM
 from tests.catalogue.both_ways import missed
 from tests.catalogue.search.arms import Array
 from tests.catalogue.search.planted import ARM, KINDS, OFFSETS, planted
-from tests.catalogue.shares import share
+from tests.catalogue.shares import MOST_SEARCHED, share
 from tests.text.controller import OK, Controller
 from tests.text.units import compiled
 
@@ -33,7 +33,7 @@ def test_planted_poses(kind: str, lateral: float) -> None:
 
 def missed_of_a_share(robot: softkin.Mechanism, axes: Array, references: Array) -> tuple[float, float]:
     """`missed`, of the rows that this core is asked."""
-    asked = share(len(axes))
+    asked = share(len(axes), MOST_SEARCHED)
     return missed(robot, axes[asked], references[asked])
 
 
