@@ -69,11 +69,9 @@ def _mechanism_of(path: Path, values: Mapping[str, object]) -> Mechanism:
     if not isinstance(mechanism, Mechanism):
         raise DescriptionError(in_place(path, "defines no MECHANISM"))
     try:
-        return validate(mechanism)
+        return validate(mechanism, {str(v.symbol): v.name for v in values.values() if isinstance(v, Joint | Parameter)})
     except DescriptionError as problem:
-        names = {str(v.symbol): v.name for v in values.values() if isinstance(v, Joint | Parameter)}
-        said = re.sub(r"(?<= reads ')\w+", lambda found: names.get(found.group(), found.group()), str(problem))
-        raise DescriptionError(in_place(path, said)) from None
+        raise DescriptionError(in_place(path, str(problem))) from None
     except Exception as problem:  # an error that no check foresees also belongs to this file
         if _is_of_the_compiler(problem):
             raise

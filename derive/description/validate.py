@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from keyword import iskeyword
 
 import sympy as sp
@@ -39,14 +39,14 @@ _UNIT = re.compile(r"([\w°^.%]+([/·-][\w°^.%]+)*)?\Z")
 Expressions = tuple[tuple[str, sp.Basic], ...]
 
 
-def validate(mechanism: Mechanism) -> Mechanism:
-    """Return the mechanism, or raise `DescriptionError` with one sentence that names what is wrong."""
-    for problem in _problems(mechanism):
+def validate(mechanism: Mechanism, names: Mapping[str, str] | None = None) -> Mechanism:
+    """The mechanism, or a `DescriptionError` with one sentence. names: of what the file has, by their symbols."""
+    for problem in _problems(mechanism, names or {}):
         raise DescriptionError(problem)
     return mechanism
 
 
-def _problems(mechanism: Mechanism) -> Iterator[str]:
+def _problems(mechanism: Mechanism, names: Mapping[str, str]) -> Iterator[str]:
     yield from _names(mechanism)
     yield from _texts(mechanism)
     for parameter in mechanism.parameters:
@@ -59,7 +59,7 @@ def _problems(mechanism: Mechanism) -> Iterator[str]:
     yield from _periods(mechanism)
     yield from wrong_amounts(mechanism)
     yield from _shape(mechanism)
-    yield from _symbols(mechanism)
+    yield from _symbols(mechanism, names)
     yield from _constraints(mechanism)
 
 
@@ -298,7 +298,7 @@ def _equations(mechanism: Mechanism) -> Expressions:
     return (*(("closure", sp.sympify(equation)) for equation in mechanism.equations), *heading)
 
 
-def _symbols(mechanism: Mechanism) -> Iterator[str]:
+def _symbols(mechanism: Mechanism, names: Mapping[str, str]) -> Iterator[str]:
     joints = {j.symbol for j in mechanism.joints}
     known = joints | _parameters(mechanism)
     if mechanism.chain is None:
@@ -314,7 +314,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
         *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
     ]
     for place, expression in named:
-        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
+        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism", names)
     for branch in mechanism.branches:
         if not branch.is_crossing and not joints & branch.indicator.free_symbols:
             yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
@@ -342,7 +342,9 @@ def _parameters(mechanism: Mechanism) -> set[sp.Basic]:
     return {p.symbol for p in mechanism.parameters}
 
 
-def _unknown(place: str, expression: sp.Basic, known: Iterable[sp.Basic], wanted: str) -> Iterator[str]:
+def _unknown(
+    place: str, expression: sp.Basic, known: Iterable[sp.Basic], wanted: str, names: Mapping[str, str] | None = None
+) -> Iterator[str]:
     strange = expression.free_symbols - set(known) - {DEGREE}
     for symbol in sorted(strange, key=str):
-        yield f"{place} reads {str(symbol)!r}, which is not {wanted}"
+        yield f"{place} reads {(names or {}).get(str(symbol), str(symbol))!r}, which is not {wanted}"
