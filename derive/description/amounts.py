@@ -26,8 +26,8 @@ _LONG_DECIMALS = 1e-9
 _THOUSANDTHS = 1000
 _UNIT = 1e-15
 """Decimals whose squares differ from one by less than this, in their sum, are cosine and sine of one angle."""
-_WRITTEN = 10**6
-"""A decimal with at most six decimals is exact as it stands."""
+STATED = 10**6
+"""A decimal with at most six decimals is one that a person writes: it is exact as it stands, its products are short."""
 _DECIMALS = 4
 """A decimal with at least this many digits that equals a rounded multiple of 90° is that multiple."""
 _NEARLY = 0.01
@@ -129,7 +129,7 @@ def _with_exact_functions(mechanism: Mechanism) -> Mechanism:
     functions = {f for e in stated for f in e.atoms(sp.sin, sp.cos)}
     table = {f: f.func(sp.Add(*map(_in_exact_radians, sp.Add.make_args(sp.expand(f.args[0]))))) for f in functions}
     decimals = {d for e in stated for d in e.atoms(sp.Float)} - {d for f in functions for d in f.atoms(sp.Float)}
-    table |= _as_functions(sorted((d for d in decimals if without_decimals(d).q > _WRITTEN), key=sp.Abs))
+    table |= _as_functions(sorted((d for d in decimals if without_decimals(d).q > STATED), key=sp.Abs))
     exact: Mechanism = with_symbols(mechanism, {f: g for f, g in table.items() if f != g})
     return exact
 

@@ -12,7 +12,7 @@ from itertools import combinations, product
 
 import sympy as sp
 
-from derive.description.amounts import in_radians, number_in, with_symbols, without_decimals
+from derive.description.amounts import STATED, in_radians, number_in, with_symbols, without_decimals
 from derive.description.dimensions import Parameter, Role
 from derive.description.mechanism import Mechanism
 from derive.geometry.frames import Chain, Factor, Motion
@@ -113,8 +113,6 @@ def with_named_loop_angles(mechanism: Mechanism) -> Mechanism:
 
 
 _RIGHT = sp.pi / 2
-_WRITTEN = 10**6
-"""A decimal with at most six decimals is one that a person writes, and its products are short."""
 
 
 def with_exact_numbers(mechanism: Mechanism) -> Mechanism:
@@ -128,7 +126,7 @@ def with_exact_numbers(mechanism: Mechanism) -> Mechanism:
     stated = [sp.sympify(e) for e in (*mechanism.equations, *ends, *(b.indicator for b in mechanism.branches))]
     in_angles = {a for e in stated for f in e.atoms(sp.sin, sp.cos) for a in f.atoms(sp.Float)}
     exact = {d: without_decimals(d) for e in stated for d in e.atoms(sp.Float) - in_angles}
-    found: Mechanism = with_symbols(mechanism, {d: n for d, n in exact.items() if n.q <= _WRITTEN})
+    found: Mechanism = with_symbols(mechanism, {d: n for d, n in exact.items() if n.q <= STATED})
     return found
 
 

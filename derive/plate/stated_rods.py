@@ -17,6 +17,7 @@ from typing import TypeVar
 import numpy as np
 import sympy as sp
 
+from derive.description.amounts import STATED
 from derive.description.loops import FREE_TWIST
 from derive.description.mechanism import ROTATION, Mechanism, Plane, Rod, Turning, guide, on_plate, ring_rod, rod
 from derive.ir.constants import DEGREE
@@ -25,7 +26,6 @@ from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 from derive.plate.legs import about_z, by_angles
 
 _POSES, _SAME, _ROUNDING = 16, 1e-9, 1e-12
-_LONG = 10**6
 
 
 def with_stated_rods(mechanism: Mechanism) -> Mechanism:
@@ -191,7 +191,7 @@ def _has_a_sign(mechanism: Mechanism, length: sp.Expr) -> bool:
 
 def _root_of(mechanism: Mechanism, square: sp.Expr) -> sp.Expr | None:
     """The length with this square; None where joints are left in a root."""
-    if square.is_Rational and square.q > _LONG and square > 0 and not sp.sqrt(square).is_Rational:
+    if square.is_Rational and square.q > STATED and square > 0 and not sp.sqrt(square).is_Rational:
         return sp.Rational(math.sqrt(square))  # the root of decimals that were multiplied
     length = sp.powdenest(sp.sqrt(sp.factor(square)), force=True).replace(sp.Abs, lambda of: of)
     joints = {j.symbol for j in mechanism.joints}
@@ -211,8 +211,8 @@ def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
 
 def _plain(value: sp.Expr) -> sp.Expr:
     """The value with long fractions as the decimals that they are but for rounding, else as floating-point numbers."""
-    decimals = {r: sp.Rational(f"{float(r):.15g}") for r in value.atoms(sp.Rational) if r.q > _LONG}
-    return value.xreplace({r: short if short.q <= _LONG else sp.Float(r) for r, short in decimals.items()})
+    decimals = {r: sp.Rational(f"{float(r):.15g}") for r in value.atoms(sp.Rational) if r.q > STATED}
+    return value.xreplace({r: short if short.q <= STATED else sp.Float(r) for r, short in decimals.items()})
 
 
 def _about_z() -> dict[sp.Symbol, sp.Expr]:

@@ -6,14 +6,12 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.description.amounts import as_right_angles, number_in, without_decimals
+from derive.description.amounts import STATED, as_right_angles, number_in, without_decimals
 from derive.description.mechanism import Mechanism, Role
 from derive.geometry.frames import Motion
 from derive.ir.symbols import COORDINATE_NAMES, real
 
 _COORDINATES = {real(c) for c in COORDINATE_NAMES}
-_WRITTEN = 10**6
-"""A decimal with at most six decimals is exact as it stands."""
 
 
 def as_fractions(mechanism: Mechanism) -> Mechanism:
@@ -39,7 +37,7 @@ def _without_roots(equation: sp.Expr) -> sp.Expr:
 def is_rounded(machine: Mechanism, described: Mechanism) -> bool:
     """Whether numbers of the machine were computed of those of the description, other than by sums."""
     if described.chain is None:
-        long = (d for e in described.closure for d in e.atoms(sp.Float) if without_decimals(d).q > _WRITTEN)
+        long = (d for e in described.closure for d in e.atoms(sp.Float) if without_decimals(d).q > STATED)
         return any(long) or any(sp.sympify(e).has(sp.Float) for e in machine.equations)
     turns = [number_in(f.amount) for f in described.chain.factors if f.motion is Motion.TURN]
     shifts = [f.amount for f in described.chain.factors if f.motion is Motion.SHIFT]
