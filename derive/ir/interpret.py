@@ -92,7 +92,7 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
     known = {**values, **{s.name: _as_declared(values[s.name], s) for s in program.inputs if s.name in values}}
     shape = _common_shape(v.shape if isinstance(v, np.ndarray) else np.shape(v) for v in values.values())
-    if _is_run_by_rows(program, prod(shape)) and _iterates(program):
+    if _iterates(program) and _is_run_by_rows(program, prod(shape)):
         return _one_by_one(program, known, shape)
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):

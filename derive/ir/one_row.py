@@ -1,6 +1,8 @@
-"""A program as a function of Python's own numbers: the reference interpreter for few rows, where an operation on arrays
-takes twenty times as long as one on numbers. It rounds as arrays do: all but sums, products, roots and comparisons is
-asked of the same functions.
+"""A program as a function of Python's own numbers: the reference interpreter for few rows. One row of a program that
+iterates took 7 times as long on arrays (a hexapod), and 36 times (an arm that is searched).
+
+It rounds as arrays do: all but sums, products, roots and comparisons is asked of the same functions. It shares nothing
+with the Python that is generated, which is measured against it.
 """
 
 from __future__ import annotations
@@ -31,6 +33,7 @@ _TEXTS = {
 }  # fmt: skip
 
 _DEEP = 50
+"""A value that is nested so deeply has a line of its own."""
 
 
 class Refused(Exception):
@@ -67,7 +70,7 @@ class _Writer:
 
     def __init__(self, program: Program) -> None:
         self.known: dict[str, Any] = {
-            "Refused": Refused, "sqrt": sqrt, "inf": inf, "nan": nan, "solved": solved, "whole": _whole
+            "Refused": Refused, "sqrt": sqrt, "inf": inf, "nan": nan, "solved": solved
         }  # fmt: skip
         self._names: dict[str, str] = {}
         self._free = count()
@@ -177,9 +180,5 @@ class _Writer:
         return f"float({function}({', '.join(parts)}))"
 
 
-_DECLARED = {(False, False): "float", (True, False): "bool", (False, True): "whole"}
-
-
-def _whole(value: float) -> int:
-    """An integer, as an array of integers has it."""
-    return int(np.asarray(value, np.int64))
+_DECLARED = {(False, False): "float", (True, False): "bool", (False, True): "int"}
+"""By whether a name is a flag, and whether it is a count: a count is made of integers, so never of NaN."""

@@ -5,7 +5,7 @@ import { shapesOf } from "./shapes.js";
 const SWEEP = [27, 41, -33, 22, 48, 15, -19];
 const FACTORS = [1, 0.6, -1, 0.3, -0.6, 1.6, 0];
 const GOOD = 0.12;
-/** How high the tool stands above its work. */
+/** How high the tool stands above its work, in shares of `lengthOf`. */
 const WORK = 0.4;
 
 /** The nominal values of all parameters, by name. */

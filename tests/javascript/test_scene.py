@@ -141,6 +141,7 @@ def test_rods_are_as_long_as_stated(name: str) -> None:
     ((scene, _),) = scenes(name, parameters, [ask(module_of(name), [])["description"]["drawn"]])
     rods = [body for body in scene["bodies"] if body["kind"] == "rod"]
     assert list(dict.fromkeys(rod["name"] for rod in rods)) == [bar.name for bar in bars]
+    assert {rod["name"]: rod["isCable"] for rod in rods} == {bar.name: bar.only_pulls for bar in bars}
     values = dict(machine.values) | {
         j.symbol.name: np.asarray(a * float(evaluate(j.unit, dict(machine.values))))
         for j, a in zip(mechanism.joints, pose.axes, strict=True)

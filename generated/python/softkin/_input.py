@@ -14,9 +14,9 @@ from softkin._types import FrameLike, KinematicsError, Numbers, Parameter, Rotat
 
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 _ROUNDED = 1e-9
+"""The last row of a matrix (4, 4) may differ by this."""
 _TAKES_ANY = 0x0C
 """The flags of a function that takes any number of arguments, or any keyword."""
-"""The last row of a matrix (4, 4) may differ by this."""
 
 
 def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
