@@ -7,6 +7,7 @@ from derive.description.catalogue import Entry
 from derive.description.mechanism import Mechanism
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
+from tests.kept import kept
 
 
 @cache
@@ -29,4 +30,4 @@ def has_struts(mechanism: Mechanism) -> bool:
 @cache
 def kinematics_of(mechanism: Mechanism) -> Kinematics:
     """All programs of a mechanism."""
-    return build(mechanism)
+    return kept("kinematics", mechanism, build)

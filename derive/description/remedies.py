@@ -98,6 +98,8 @@ def remedy_of(problem: str) -> str:
         return _another_field(word[1] or "Mechanism", word[2])
     if (word := re.search(r"name '(\w+)' is not defined|cannot import name '(\w+)'", problem)) is not None:
         return _another_name(word[1] or word[2]) or _first_remedy(problem)
+    if (word := re.search(r"(\w+)\(\) missing \d+ required positional", problem)) is not None:
+        return _called(word[1]) or _first_remedy(problem)
     return _first_remedy(problem)
 
 
@@ -120,8 +122,19 @@ def _another_field(owner: str, word: str) -> str:
     return f"did you mean {close[0]!r}?" if close else f"the fields are {', '.join(known)}"
 
 
+def _called(word: str) -> str:
+    """The call of a function of the vocabulary with all that it must have; empty for another one."""
+    if word not in mechanism.__all__ or word == "Mechanism":
+        return ""
+    needed = [p.name for p in signature(getattr(mechanism, word)).parameters.values() if p.default is p.empty]
+    return f"call it as {word}({', '.join(needed)})"
+
+
 def _another_name(word: str) -> str:
-    """The word of the vocabulary that was meant, whatever its capital letters; empty if none is like it."""
+    """The import of a word of the vocabulary, or the one that was meant, whatever its capital letters; else empty."""
+    for room, names in (("derive.mechanism", mechanism.__all__), ("derive.frames", _FRAMES)):
+        if word in names:
+            return f"write above it: from {room} import {word}"
     return did_you_mean(word, (*mechanism.__all__, *_FRAMES, "sin", "cos", "sqrt", "pi"))
 
 

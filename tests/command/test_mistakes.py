@@ -106,7 +106,7 @@ def test_a_mistake_while_a_description_is_read(folder: Folder, monkeypatch: pyte
     [
         ("from derive.mechanism import rotatory\n", "rail.py:1: ImportError: cannot import name 'rotatory'"),
         ("import no_such_module\n", "rail.py:1: ModuleNotFoundError: No module named 'no_such_module'"),
-        ("from own_lengths import L1\n", "rail.py:1: NameError: name 'length' is not defined; define it above"),
+        ("from own_lengths import L1\n", "rail.py:1: NameError: name 'length' is not defined; write above it: from"),
     ],
 )
 def test_a_file_that_lacks_a_name_is_at_fault(

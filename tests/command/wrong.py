@@ -50,6 +50,10 @@ WRONG: dict[str, str] = {
     "TypeError: …; take sin, cos and sqrt from sympy": arm("from sympy", "from math"),
     "TypeError: …; a chain is a product": arm("Tx(L1) * Rz", "Tx(L1) + Rz"),
     "TypeError: length() missing 1 required …; as in length(": arm(", nominal=400.0", ""),
+    "TypeError: rod() missing 1 required …; call it as rod(name, base, plate, length)": changed(
+        FIVE_BAR, (", TOOL, ROD_1)", ", TOOL)")
+    ),
+    "NameError: name '…' is not defined; write above it: from derive.frames import …": arm(", Tx", ""),
     "parameter '…': '…' is not a number": arm("nominal=400.0", 'nominal="400"'),
     "…: its text holds …, a line break or a character that is not printed": arm("Axis A1 to axis A2", "A1 to\\nA2"),
     "branch '…': '…' cannot name it, a side or the margin of it: lower-case words": arm('"elbow"', '"my elbow"'),

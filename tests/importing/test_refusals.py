@@ -169,6 +169,10 @@ REFUSALS: Refusals = {
             "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before "
             "that joint as --tip, or one beside its axis$",
         ),
+        "a tip on the last of two parallel axes": (
+            urdf("r", joint("a", "revolute"), joint("b", "revolute", "0.2 0 0")),
+            "its tip lies on the axis of its last joint",
+        ),
         "ways that are no task": (
             urdf(
                 "r", joint("a", "revolute"), joint("b", "revolute", axis="1 0 0"), joint("c", "prismatic", axis="1 0 0")

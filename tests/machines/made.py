@@ -1,8 +1,6 @@
 """A machine of the collection, made: derived with every check, its package imported, its block compiled."""
 
 import ast
-import pickle
-from base64 import b64decode, b64encode
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -11,13 +9,13 @@ import numpy as np
 import softkin
 from numpy.typing import NDArray
 
-from derive.cache import ROOT, Cache, canonical, foundation, key_of
 from derive.description.mechanism import Mechanism, Role
 from derive.description.validate import validate
 from derive.geometry.frames import Motion
 from derive.pipeline import Built, derive_and_measure, languages
 from tests.catalogue.closure import Closure
 from tests.catalogue.loop_machines import LoopClosure
+from tests.kept import kept
 from tests.machines.angle_machines import MEANT
 from tests.machines.carried import CARRIED
 from tests.machines.collection import MACHINES
@@ -29,7 +27,6 @@ from tests.text.controller import OK, Controller
 from tests.text.units import compiled_text
 
 Array = NDArray[np.float64]
-KEPT = Cache(ROOT / "build" / "machines")
 
 
 @dataclass(frozen=True)
@@ -97,21 +94,15 @@ def made(name: str) -> Made:
 
 @cache
 def built_of(mechanism: Mechanism) -> Built:
-    """What `derive_one` makes of a mechanism, with every check but without pictures: in this run, or in an earlier one
-    of the same compiler, as `make test` before `make sweep`.
-    """
-    key = key_of("built", foundation(None), canonical(mechanism))
-    kept = KEPT.read(key)
-    if kept is not None:
-        found: Built = pickle.loads(b64decode(kept))
-        return found
+    """What `derive_one` makes of a mechanism, with every check but without pictures."""
+    return kept("built", mechanism, _derived)
+
+
+def _derived(mechanism: Mechanism) -> Built:
     whole = derive_and_measure(mechanism)
     parts = {language.name: language.part(whole) for language in languages()}
     written = {name: part for name, part in parts.items() if part is not None}
-    built = Built("", "", None, written, {}, whole.evidence)
-    KEPT.write(key, b64encode(pickle.dumps(built)).decode())
-    KEPT.tidy()
-    return built
+    return Built("", "", None, written, {}, whole.evidence)
 
 
 def imported_class(mechanism: Mechanism, built: Built) -> type[softkin.Mechanism]:

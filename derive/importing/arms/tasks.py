@@ -132,9 +132,9 @@ def on_axis(arm: Arm, task: Followed) -> Arm:
 def _task(seen: Motions, arm: Arm, rank: int) -> tuple[str, str]:
     shifts, turns = seen.span(slice(0, 3)), seen.span(slice(3, 6))
     if seen.rank(slice(0, 3)) == rank:
-        return _position(shifts, rank), "NONE"
+        return _position(arm, shifts, rank), "NONE"
     if len(turns) == 1 and abs(turns[0][2]) > 1.0 - _SMALL:
-        return _position(shifts, rank - 1), "ABOUT_Z"
+        return _position(arm, shifts, rank - 1), "ABOUT_Z"
     if len(turns) == 1:
         raise UnreadableRobot(
             "its tip turns about one axis that is not z of the base: choose a base link whose z is along that axis, so "
@@ -144,25 +144,32 @@ def _task(seen: Motions, arm: Arm, rank: int) -> tuple[str, str]:
         return "", "FULL"
     if rank == 6:
         return "xyz", "FULL"
-    if arm.lines[-1].kind is Kind.ROTARY and _beside(arm) is None:
-        raise UnreadableRobot(
-            "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before "
-            "that joint as --tip, or one beside its axis"
-        )
-    raise UnreadableRobot(
+    raise _unlike(
+        arm,
         f"its tip moves in {rank} ways that are no task of a description: choose another base or tip, or write the "
-        "description by hand"
+        "description by hand",
     )
 
 
-def _position(shifts: Array, rank: int) -> str:
+def _unlike(arm: Arm, otherwise: str) -> UnreadableRobot:
+    """What to say of a tip whose motions no task has."""
+    if arm.lines[-1].kind is Kind.ROTARY and _beside(arm) is None:
+        return UnreadableRobot(
+            "its tip lies on the axis of its last joint, which turns it and shifts it nowhere: choose the link before "
+            "that joint as --tip, or one beside its axis"
+        )
+    return UnreadableRobot(otherwise)
+
+
+def _position(arm: Arm, shifts: Array, rank: int) -> str:
     moved = [c for k, c in enumerate("xyz") if np.abs(shifts[:, k]).max(initial=0.0) >= _SMALL]
     if len(moved) == rank:
         return "".join(moved)
-    raise UnreadableRobot(
+    raise _unlike(
+        arm,
         f"its tip has {rank} free motion{'' if rank == 1 else 's'} and moves along {', '.join(moved)}, and a "
         "description commands each coordinate that moves: choose a base link whose axes are along the motions, or "
-        "another tip"
+        "another tip",
     )
 
 
