@@ -24,8 +24,8 @@ from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from derive.solver.unsolved import Unsolved
 from derive.witness import witness
-from tests.machines.collection import MACHINES as COLLECTION
-from tests.mechanisms import catalogue
+from tests.machines.made import made
+from tests.mechanisms import catalogue, kinematics_of
 from tests.unit.form.chains import A2, A3, A4, CHAINS
 from tests.unit.form.link_frames import by_table, in_link_frames
 from tests.unit.form.rewording import reworded
@@ -73,11 +73,12 @@ def operations(kin: Kinematics) -> int:
 @pytest.mark.parametrize("name", DERIVED)
 def test_what_is_derived_of_another_wording_solves_the_machine(name: str) -> None:
     """No solution is wrong, and none is missing: the witness measures it against the first description."""
-    mechanism = validate(COLLECTION[name])
-    own, again = build(mechanism), build(validate(replace(mechanism, chain=by_table(mechanism, 1))))
-    seen, of_own = witness(again, mechanism).inverted, witness(own, mechanism).inverted
-    assert seen is not None and of_own is not None and seen.solutions == of_own.solutions
-    assert operations(again) == operations(own)
+    mechanism, known = made(name).mechanism, made(name).built.evidence
+    again = build(validate(replace(mechanism, chain=by_table(mechanism, 1))))
+    seen = witness(again, mechanism).inverted
+    assert known is not None and known.inverted is not None
+    assert seen is not None and seen.solutions == known.inverted.solutions
+    assert operations(again) == operations(kinematics_of(mechanism))
 
 
 ROLLED = Task("xyz", Turning.PITCH_ROLL)

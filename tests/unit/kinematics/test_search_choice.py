@@ -7,7 +7,6 @@ import pytest
 from sympy import Integer, cos, false, pi, sin
 
 from derive.description.mechanism import Mechanism, Parameter, Task, Turning, branch, distance, length
-from derive.description.validate import validate
 from derive.geometry.frames import Chain, Rx, Ry, Rz, Tx, Ty, Tz
 from derive.ir.interpret import run
 from derive.ir.passes import normalise
@@ -18,8 +17,10 @@ from derive.kinematics.sampling import sample_axes, sample_machine
 from derive.kinematics.search.choice import with_search
 from derive.solver.unsolved import Undetermined
 from derive.witness import witness
-from tests.machines.chain_machines import ANGLES_AS_NUMBERS, OF_DEGREE_FOUR
+from tests.machines.chain_machines import OF_DEGREE_FOUR
+from tests.machines.made import made
 from tests.machines.searched_machines import POINTING
+from tests.mechanisms import kinematics_of
 from tests.unit.kinematics.inventions import described
 from tests.unit.solver.test_fast_refusals import JOINTS, LENGTHS, L
 
@@ -146,20 +147,15 @@ def test_a_trial_that_is_out_of_reach_elsewhere_is_searched(chain: Chain) -> Non
     assert found.mechanism.search is not None and found.tried_branches > 0
 
 
-def test_an_angle_of_a_table_counts_in_degrees_in_the_branches_that_are_derived() -> None:
-    """The witness compares the sign of every branch with its indicator, and counts the solutions."""
-    evidence = witness(build(validate(ANGLES_AS_NUMBERS)), ANGLES_AS_NUMBERS)
-    assert evidence.inverted is not None and evidence.inverted.solutions == 10
-
-
 @pytest.mark.parametrize("name", OF_DEGREE_FOUR)
 def test_a_commanded_point_is_searched_without_a_step_of_two_roots(name: str) -> None:
     """Its trial has a solution at every angle of the joint, and its residual is a polynomial: no solution is missed."""
-    kinematics = build(validate(OF_DEGREE_FOUR[name]))
+    machine = made(name)
+    kinematics = kinematics_of(machine.mechanism)
     assert kinematics.mechanism.search is not None and kinematics.tried_branches == 0
     assert [b.is_crossing for b in kinematics.mechanism.branches] == [True]
-    evidence = witness(kinematics, OF_DEGREE_FOUR[name])
-    assert evidence.inverted is not None and evidence.inverted.missed is not None
+    evidence = machine.built.evidence
+    assert evidence is not None and evidence.inverted is not None and evidence.inverted.missed is not None
     assert evidence.inverted.missed[0] == 0 and evidence.inverted.missed[1] > 50
 
 
