@@ -62,6 +62,8 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if options.command == "check":
         options.run = own.check if options.files else catalogue.compare
+    if options.command == "report" and options.files:
+        options.run = explain.explain
     return options
 
 
@@ -167,12 +169,13 @@ def _catalogue_commands(commands: argparse._SubParsersAction[argparse.ArgumentPa
         help="write the mechanisms that can be derived; without it, one fault leaves the output folder as it was",
     )
     generate.set_defaults(run=catalogue.generate)
-    text = "write a page for every mechanism of a folder: its derivation, step by step, with pictures and maps"
+    text = "write a page of machines, or of the whole catalogue: the derivation, step by step, with pictures and maps"
     pages = commands.add_parser("report", help=text, description=text)
+    pages.add_argument("files", nargs="*", type=Path, metavar="FILE", help="a description, or a folder of them")
     pages.add_argument("--out", type=Path, default=report.OUTPUT, metavar="DIR", help=_PAGES)
     pages.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the folder of descriptions")
     pages.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these mechanisms alone")
-    pages.set_defaults(run=report.report)
+    pages.set_defaults(run=report.report, html=True, programs=False)
 
 
 def _catalogue_options(parser: argparse.ArgumentParser) -> None:

@@ -32,7 +32,7 @@ def test_a_folder_of_its_own(folder: Folder) -> None:
     """Several files, one of them wrong: the others have their pages; no page says that it is singular."""
     folder.write("machines/rail.py", RAIL)
     folder.write("machines/wrong.py", RAIL.replace("Ty(A2)", "Tz(A2)"))
-    said = folder.run("explain", "--html", "machines", "--out", "pages")
+    said = folder.run("report", "machines", "--out", "pages")
     assert said.status == 2 and "wrong.py" in said.err
     assert folder.names("pages") == {"Rail.html"}
     text = (folder.path / "pages/Rail.html").read_text(encoding="utf-8")
