@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softkin._array import Codes, Matrix, Programs, Real, Reals, Rotation, Signs, Turns, Vector
+from softkin._array import Codes, Matrix, Programs, Reals, Rotation, Signs, Turns, Vector
 from softkin._core import TWIST
 from softkin._types import Status
-from softkin._vectors import on_flange, rates
+from softkin._vectors import moved, on_flange, plus, product, rates, seen_from, transposed, turned
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
@@ -63,7 +63,7 @@ class CoupledPrograms(Programs):
             return axes + own, both(both(status, outcome), found)
         if self.tool is not None:
             end, turn = self.tool
-            wanted = product(rotation, transposed(fixed(turn)))
+            wanted = product(rotation, transposed(turn))
             nearest, status = self.first.projection(wanted)
             axes, found = self.first.branch(plus(position, turned(nearest, end), -1.0), wanted, *first)
             return axes, both(status, found)
@@ -118,10 +118,10 @@ class CoupledPrograms(Programs):
         """The nearest rotation of the tool, where the commanded one says the turn of the flange."""
         position, orientation = self.parts
         if self.tool is not None:
-            turn = fixed(self.tool[1])
+            turn = self.tool[1]
             nearest, status = self.first.projection(product(rotation, transposed(turn)))
             return product(nearest, turn), status
-        at_zero = fixed(position.orientation_image().rotation)
+        at_zero = position.orientation_image().rotation
         nearest, status = self.second.projection(seen_from(at_zero, rotation))
         return product(at_zero, nearest), status
 
@@ -160,50 +160,3 @@ def _origin(position: Vector) -> Vector:
     """A position of zeros in the shape of another one."""
     zero = np.zeros(np.shape(position[0]))
     return zero, zero, zero
-
-
-def plus(first: Vector, second: Vector, sign: float = 1.0) -> Vector:
-    """The sum of two vectors, or their difference for a sign of -1."""
-    return first[0] + sign * second[0], first[1] + sign * second[1], first[2] + sign * second[2]
-
-
-def turned(rotation: Rotation, vector: Vector) -> Vector:
-    """The product of a rotation and a vector."""
-    x, y, z = vector
-    a, b, c = (_along(row, x, y, z) for row in rotation)
-    return a, b, c
-
-
-def _along(row: Vector, x: Real, y: Real, z: Real) -> Real:
-    return row[0] * x + row[1] * y + row[2] * z
-
-
-def product(first: Rotation, second: Rotation) -> Rotation:
-    """The product of two rotations."""
-    a, b, c = (turned(first, column) for column in zip(*second, strict=True))
-    return (a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2])
-
-
-def seen_from(base: Rotation, rotation: Rotation) -> Rotation:
-    """A rotation expressed in the frame of another rotation."""
-    return product(transposed(base), rotation)
-
-
-def transposed(rotation: Rotation) -> Rotation:
-    """The inverse of a rotation."""
-    (a, b, c), (d, e, f), (g, h, i) = rotation
-    return (a, d, g), (b, e, h), (c, f, i)
-
-
-def moved(twist: Reals, arm: Vector) -> Reals:
-    """The twist of a body, moved to the end of an arm that is fixed to the body."""
-    x, y, z, about_x, about_y, about_z = twist
-    x = x + about_y * arm[2] - about_z * arm[1]
-    y = y + about_z * arm[0] - about_x * arm[2]
-    z = z + about_x * arm[1] - about_y * arm[0]
-    return x, y, z, about_x, about_y, about_z
-
-
-def fixed(rotation: OneRotation) -> Rotation:
-    """A rotation that is the same in all rows."""
-    return rotation

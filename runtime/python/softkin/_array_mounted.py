@@ -20,22 +20,22 @@ from softkin._array import (
     reasonable,
     select,
 )
-from softkin._array_coupled import (
-    all_six,
-    bias_of_all_six,
-    both,
-    fixed,
-    moved,
-    plus,
-    product,
-    seen_from,
-    transposed,
-    turned,
-)
+from softkin._array_coupled import all_six, bias_of_all_six, both
 from softkin._core import PITCH, TURN, TWIST
 from softkin._tools import TILTS
 from softkin._types import Status
-from softkin._vectors import at_end, dot, rates, turned_twist
+from softkin._vectors import (
+    at_end,
+    dot,
+    moved,
+    plus,
+    product,
+    rates,
+    seen_from,
+    transposed,
+    turned,
+    turned_twist,
+)
 
 if TYPE_CHECKING:
     from softkin._mounted import Mounted
@@ -51,8 +51,8 @@ class MountedPrograms(Programs):
         """programs: those of the bare machine. shift: from the flange to the tool, where it is the same everywhere."""
         self.machine, self.programs, self.kind, self.shift = machine, programs, kind, shift
         self.VALUES = programs.VALUES
-        self.base, self.base_rotation = machine.base.position, fixed(machine.base.rotation)
-        self.tool, self.tool_rotation = machine.tool.position, fixed(machine.tool.rotation)
+        self.base, self.base_rotation = machine.base.position, machine.base.rotation
+        self.tool, self.tool_rotation = machine.tool.position, machine.tool.rotation
 
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """The frame of the tool."""

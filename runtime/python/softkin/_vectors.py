@@ -1,4 +1,4 @@
-"""Vectors and rotations of couplings, bases and tools, as plain numbers."""
+"""Vectors and rotations of couplings, bases and tools: their entries are numbers, or arrays with an entry a row."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def turn_between(first: Rotation, second: Rotation) -> float:
 def moved(twist: Reals, arm: Vector) -> Reals:
     """The twist of a body, moved to the end of an arm that is fixed to the body."""
     x, y, z, about_x, about_y, about_z = twist
-    x += about_y * arm[2] - about_z * arm[1]
-    y += about_z * arm[0] - about_x * arm[2]
-    z += about_x * arm[1] - about_y * arm[0]
+    x = x + (about_y * arm[2] - about_z * arm[1])
+    y = y + (about_z * arm[0] - about_x * arm[2])
+    z = z + (about_x * arm[1] - about_y * arm[0])
     return x, y, z, about_x, about_y, about_z
 
 
