@@ -27,6 +27,12 @@ def has_struts(mechanism: Mechanism) -> bool:
     return bool(lengths & {j.symbol for j in mechanism.joints})
 
 
+def limit_names(mechanism: Mechanism) -> set[str]:
+    """The parameters that limit an axis, or another quantity; the length of an upper arm is none."""
+    keys = (*(joint.key for joint in mechanism.joints), *(quantity.name for quantity in mechanism.limited))
+    return {f"{end}_{key}" for key in keys for end in ("lower", "upper")}
+
+
 @cache
 def kinematics_of(mechanism: Mechanism) -> Kinematics:
     """All programs of a mechanism."""

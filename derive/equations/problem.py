@@ -30,6 +30,8 @@ class Column:
     """The statements that bind all three entries."""
     size: sp.Expr = sp.Integer(1)
     """The largest value of the entry: a length of the machine where the entry is multiplied by one."""
+    is_bounded: bool = True
+    """Whether the entry is never larger than this: a polar radius may be, if the other value is no entry."""
 
 
 @dataclass(frozen=True)

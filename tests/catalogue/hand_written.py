@@ -186,6 +186,15 @@ def _palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return ahead * np.cos(q[0]), ahead * np.sin(q[0]), z, q[0] + q[3]
 
 
+def _tilting_palletizer(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The tool leaves the vertical by the tilt, in the direction of the flange."""
+    x, y, z, heading = _palletizer(p, q)
+    c, s, upright, aside = np.cos(heading), np.sin(heading), np.cos(q[4]), np.sin(q[4])
+    rotation = ((c * upright, -s, c * aside), (s * upright, c, s * aside), (-aside, 0 * s, upright))
+    reach = p["tool_length"]
+    return x + reach * c * aside, y + reach * s * aside, z + reach * upright, rotation
+
+
 def _face(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
     """The part turns from X to Y: the tool, seen from it, the other way."""
     return q[0] * np.cos(q[2]), -q[0] * np.sin(q[2]), q[1], -q[2]
@@ -217,6 +226,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_NutatingHeadTable_BC": _of_order("B", "C"),
     "Softkin_NutatingTable_AC": _of_order("", "AC"),
     "Softkin_Palletizer": _palletizer,
+    "Softkin_Palletizer5": _tilting_palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,
     "Softkin_TableTable_AB": _of_order("", "AB"),

@@ -186,11 +186,12 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tup
         robot = machine.open_robot
         _, statuses = robot.inverse_batch(positions, opposite, own, axes)
         turns = mechanism.task.turning is Turning.ABOUT_Z
+        is_far = mechanism.is_platform or machine.has_a_reach  # its other end may be beyond the reach
         if machine.lowest_direction > -1.0:
             is_low = opposite[:, 2, 2] < machine.lowest_direction
             assert (statuses == np.where(is_low, Status.UNREACHABLE, Status.OK)).all()
             continue
-        if mechanism.task.turning in (Turning.FULL, Turning.PITCH) or (mechanism.is_platform and not turns):
+        if mechanism.task.turning in (Turning.FULL, Turning.PITCH) or (is_far and not turns):
             assert machine.answers(statuses).any()  # another pose as any
             continue
         assert (statuses == (Status.UNREACHABLE if turns else Status.OK)).all()

@@ -21,9 +21,10 @@ NEAR = 1e-10
 def test_a_boundary_pose_is_reached(linked: Mechanism) -> None:
     """Half of the joints are at a right angle or beside one, on the branch that forward kinematics reports."""
     rng = np.random.default_rng(51)
+    needed = {p.name: p.nominal for p in linked.parameters if p.default is None}
     for count in range(MACHINES):
         own = [p for p in linked.parameters if p.role in LENGTHS]
-        given = {p.name: min(10.0 ** rng.uniform(SHORTEST, LONGEST), p.high) for p in own}
+        given = needed | {p.name: min(10.0 ** rng.uniform(SHORTEST, LONGEST), p.high) for p in own}
         one = machine(linked, f"lengths {count}", given)
         robot = one.changed(check_limits=False)
         shape = (POSES, len(robot.AXES))

@@ -8,6 +8,7 @@ import pytest
 
 from derive.description.mechanism import Joint
 from tests.catalogue.turns.axes import number_of
+from tests.mechanisms import limit_names
 from tests.text.controller import OK, Controller
 from tests.text.samples import Sample
 
@@ -44,10 +45,8 @@ def check_other_turns(one: Any, sample: Sample) -> int:
 
 def _check(one: Any, sample: Sample, limits: dict[str, float], joint: Joint | None, turns: int, expected: str) -> None:
     """With these limits the turn refuses, or what has no other turn; the turn inside is answered."""
-    free = {
-        name: 0.0 if name.startswith(("lower_", "upper_")) else value for name, value in one.robot.parameters.items()
-    }
-    robot = type(one.robot)(**{**free, **limits})
+    free = dict.fromkeys(limit_names(one.mechanism), 0.0)
+    robot = type(one.robot)(**{**one.robot.parameters, **free, **limits})
     controller = Controller(one.library, one.mechanism)
     assert controller.initialise(robot.parameters) == OK
     frame, data = robot.forward(sample.axes)

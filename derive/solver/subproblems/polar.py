@@ -160,7 +160,7 @@ def _column(along: _Side, across: _Side, radius: sp.Expr) -> Column | None:
         if column is None or not size.is_positive or column.entry in size.free_symbols:
             continue
         if other.column is None:
-            return Column(radius, size**2 * column.others - beside**2, column.lets, size)
+            return Column(radius, size**2 * column.others - beside**2, column.lets, size, is_bounded=False)
         others = sp.expand(size**2 * column.others - beside**2)
         if not others.free_symbols & beside.free_symbols:
             return Column(radius, others, column.lets, size)

@@ -42,6 +42,7 @@
 #include "p2x_type2.h"
 #include "p2y.h"
 #include "palletizer.h"
+#include "palletizer5.h"
 #include "pcc.h"
 #include "planar_3rrr.h"
 #include "polar.h"
@@ -136,6 +137,8 @@ softkin_regular p2x_type2_regular;
 softkin_regular p2y_regular;
 softkin_regular palletizer_regular;
 softkin_regular_all palletizer_regular_all;
+softkin_regular palletizer5_regular;
+softkin_regular_all palletizer5_regular_all;
 softkin_regular pcc_regular;
 softkin_regular_all pcc_regular_all;
 softkin_regular polar_regular;
@@ -237,6 +240,7 @@ const softkin_native softkin_machines[] = {
     {"p2x_type2 cfb1e2e1acec7873", &p2x_type2_mechanism, {p2x_type2_regular, NULL}},
     {"p2y 30c921779399fe62", &p2y_mechanism, {p2y_regular, NULL}},
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
+    {"palletizer5 78ef6ecf6ae1227c", &palletizer5_mechanism, {palletizer5_regular, palletizer5_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},

@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.palletizer import Palletizer
+    from softkin.palletizer5 import Palletizer5
     from softkin.pcc import PCC
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
@@ -163,6 +164,7 @@ __all__ = [
     "P2XType1",
     "P2XType2",
     "Palletizer",
+    "Palletizer5",
     "Parameter",
     "Planar3RRR",
     "Polar",
@@ -250,6 +252,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
+    "Softkin_Palletizer5": ("palletizer5", "Palletizer5"),
     "Kin_PCC": ("pcc", "PCC"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),

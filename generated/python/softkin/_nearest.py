@@ -230,7 +230,10 @@ class _Search:
 
     def run(self, start: Reals) -> Reals | None:
         """The axes inside all limits that are nearest to the reference; None if no sum of steps is inside."""
-        self._level(0, start, (0.0, 0.0))
+        moved = {i for *_, final in self.turning.coupled for i in final}
+        ranges = enumerate(zip(start, self.turning.ranges, strict=True))
+        if all(i in moved or low <= value <= high for i, (value, (low, high)) in ranges):
+            self._level(0, start, (0.0, 0.0))
         return self.best
 
     def _level(self, level: int, values: Reals, cost: _Cost) -> None:

@@ -8,7 +8,7 @@ from derive.description.mechanism import Mechanism, Role
 from derive.emit.softmotion.inputs import wanted_name
 from derive.kinematics.parameters import machine_parameters
 from tests.catalogue.turns.axes import robot_of
-from tests.mechanisms import catalogue
+from tests.mechanisms import catalogue, limit_names
 from tests.text.controller import NOT_INITIALIZED, OK, Controller
 from tests.text.units import compiled, text_of
 from tests.text.values import PROPERTIES_TYPE, meaningless
@@ -47,7 +47,7 @@ def test_the_lengths_that_are_named_are_refused_at_0(mechanism: Mechanism) -> No
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda m: m.name)
 def test_what_limits_an_axis_that_is_given_no_limits_is_said(mechanism: Mechanism) -> None:
     """Where a pitch or the closure limits it, with the numbers, in the input's comment and the Python class."""
-    limits = {p.name: p for p in machine_parameters(mechanism) if p.name.startswith(("lower_", "upper_"))}
+    limits = {p.name: p for p in machine_parameters(mechanism) if p.name in limit_names(mechanism)}
     text, meanings = (
         " ".join(text_of(mechanism).replace("//", "").split()),  # a long sentence stands on two lines
         {p.name: p.meaning for p in robot_of(mechanism, _nominal(mechanism)).PARAMETERS},

@@ -3,6 +3,7 @@
 import pytest
 
 from derive.description.mechanism import Mechanism
+from tests.mechanisms import limit_names
 from tests.text import test_axis_settings, test_configuration_blocks, test_initialise
 from tests.text.controller import BAD_INPUT, NOT_INITIALIZED
 from tests.text.coupling import test_structured_text as tried
@@ -53,7 +54,7 @@ def _refused_by_forward_kinematics(one: tried.OrientationPair, sample: Sample) -
     axes = (1e9 + 1.0 - 2_777_778 * 360.0, *sample.axes[1:])
     first, (frame, named) = one.robot.AXES[0].name.lower(), one.robot.forward(axes)
     block = OrientationController(one.library, one.mechanism)
-    unlimited = {n: 0.0 if n.startswith(("lower_", "upper_")) else v for n, v in one.robot.parameters.items()}
+    unlimited = {**one.robot.parameters, **dict.fromkeys(limit_names(one.mechanism), 0.0)}
     block.initialise({**unlimited, f"lower_{first}": -1e9, f"upper_{first}": 1e9})
     branches, reference = one.robot.BRANCHES, (1e9, *sample.axes[1:])
     data = (*named[:branches], *[0] * (len(named) - branches))

@@ -21,17 +21,17 @@ from derive.emit.picture import canvas
 from derive.emit.picture.canvas import pictures, text_width
 from derive.emit.picture.naming import spelled
 from derive.emit.picture.page import page
+from derive.emit.st.names import capitalized
 from derive.ir.program import Require, Status
 from derive.kinematics.build import build
 from derive.report.reference_calls import margins
+from tests.mechanisms import limit_names
 from tests.unit.drawing.machines import CATALOGUE, drawn
 
 ST = OUTPUT / "st"
 PICTURES = ST / "pictures"
 _TEXT = "{http://www.w3.org/2000/svg}text"
 _INPUT = re.compile(r"\{attribute 'sm_kin_param_unit' := 'u'\}\n  (d\w+) : LREAL")
-_SETTINGS = ("dOffset", "dLower", "dUpper")
-"""Inputs of axes and limits, which are no lengths of the machine."""
 
 
 @pytest.fixture(params=CATALOGUE)
@@ -90,7 +90,8 @@ def test_axes_and_lengths_are_in_the_text(mechanism: Mechanism) -> None:
     text = " ".join(_in_full(element.text or "") for element in _texts(mechanism))
     text = " ".join([text, *_series(text)])
     declaration = _block(mechanism).split("END_VAR")[0]
-    lengths = [name for name in _INPUT.findall(declaration) if not name.startswith(_SETTINGS)]
+    settings = limit_names(mechanism) | {joint.offset.name for joint in mechanism.joints}
+    lengths = set(_INPUT.findall(declaration)) - {f"d{capitalized(name)}" for name in settings}
     assert len(lengths) >= sum(p.unit == "u" for p in mechanism.parameters)
     for name in (*(j.name for j in mechanism.joints), *lengths):
         assert re.search(rf"(?<!\w){name}(?!\w)", text), name

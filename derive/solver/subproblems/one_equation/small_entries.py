@@ -50,6 +50,13 @@ def with_small_entries(
     return (less, more), column.lets
 
 
+def is_bounded(column: Column | None, factors: Factors) -> bool:
+    """Whether the factors are the size of a column less its entry, and more: none is ever negative."""
+    if column is None or not column.is_bounded:
+        return False
+    return {*factors} == {column.size - column.entry, column.size + column.entry}
+
+
 def _ends(column: Column, factors: Factors) -> tuple[Factors, Factors] | None:
     """(h, entry) for h - entry and (h, -entry) for h + entry, or the reverse; None if the factors are others."""
     less, more = (sp.expand(f) for f in factors)

@@ -28,7 +28,7 @@ from derive.solver.subproblems.direction import free_angle
 from derive.solver.subproblems.one_equation.amplitude import Amplitude, amplitude_of
 from derive.solver.subproblems.one_equation.lateral import Row, aimed_at_point
 from derive.solver.subproblems.one_equation.other_leg import held_by_leg, other_leg, with_leg
-from derive.solver.subproblems.one_equation.small_entries import with_small_entries
+from derive.solver.subproblems.one_equation.small_entries import is_bounded, with_small_entries
 from derive.solver.subproblems.one_equation.triangle import in_lengths
 from derive.solver.subproblems.shortfall import out_of_reach
 
@@ -87,9 +87,10 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
     size = sp.Abs if amplitude.is_signed else sp.Add
     less, more = amplitude.factors or (in_lengths(length - right), in_lengths(length + right))
     named = (less, more)
+    holds: sp.Basic | None = None if is_bounded(equation.column, named) else sp.true
     (less, more), column = with_small_entries(problem, equation, (less, more), amplitude.square)
     uncounted = int(sp.count_ops([less, more]) - sp.count_ops(list(named)))
-    larger, leg, holds = tuple[Let, ...](), None, sp.true
+    larger, leg = tuple[Let, ...](), None
     if amplitude.aimable is not None:  # joints change the arm, which may lie along the coordinate
         leg = other_leg(problem, equation, angle, amplitude.determinant, amplitude.naming.lets)
     if leg is not None:
@@ -134,11 +135,14 @@ def _cosine(
     name: sp.Symbol,
     value: sp.Expr,
     factors: tuple[sp.Expr, sp.Expr],
-    holds: sp.Basic,
+    holds: sp.Basic | None,
 ) -> tuple[Statement, ...]:
     """The cosine of the swing, and the condition that it exists. Near the place where the arm vanishes, rounding of the
-    equation may move the cosine beyond one: there it is set to one. holds: the condition that the other leg exists.
+    equation may move the cosine beyond one: there it is set to one. holds: the condition that the other leg exists;
+    None if the value is always a cosine, as an entry of a rotation is.
     """
+    if holds is None:
+        return (Let(name, value),)
     shown = sp.Mul(*factors) if amplitude.shown_factors is None else amplitude.shown_factors
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     reason = out_of_reach(angle, shown, known)
