@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 
 from derive.description.joints import Kind
 from derive.importing.formats.bodies import WORLD, File, Frame, frames_of, own_joints, passed, places_of
-from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown, whole
+from derive.importing.formats.documents import between, direction_rounding, limit, number, numbers, parsed, rounding, shown, whole
 from derive.importing.formats.legs import Meeting, NoRods, meeting_of
 from derive.importing.formats.loops import Joints, Loop, Loops, loop_notes
 from derive.importing.formats.transmissions import Follower, driven
@@ -195,7 +195,9 @@ def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Ma
     by = driven(file.path, name, followers)
     along: Triple = (direction[0] / size, direction[1] / size, direction[2] / size)
     off = by.rounding + _start_rounding(file, name, stated)
-    moving = Moving(kind, along, by.drives, by.offset - _start(file, name, stated), off)
+    moving = Moving(
+        kind, along, by.drives, by.offset - _start(file, name, stated), off, direction_rounding(element, "axis", size)
+    )
     return [Step(name, (Shifted((x, y, z)),), moving), Step(name, (Shifted((-x, -y, -z)),))]
 
 
