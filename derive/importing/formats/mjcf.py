@@ -54,14 +54,17 @@ def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
         if (meeting := meeting_of(Loops(file, frames, joints, base), tip)) is not None:
             return _with_rods(file, frames, joints, base, tip, meeting)
     except NoRods as problem:
-        why = str(problem)
-    return _open(file, frames, joints, base, tip or _only_end(path, file.root, frames, why), why)
+        why = f"; its loops are no rods that meet in the tip: {problem}"
+    try:
+        return _open(file, frames, joints, base, tip or _only_end(path, file.root, frames))
+    except UnreadableRobot as problem:
+        raise UnreadableRobot(f"{problem}{why}") from None
 
 
 def _open(
-    file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str, why: str
+    file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str
 ) -> Robot:
-    """The chain from base to tip. why: what its loops lack, to be a machine of rods."""
+    """The chain from base to tip."""
     way = passed(frames, base, tip)
     if not way:
         raise UnreadableRobot(f"{file.path}: base and tip are the same body, {base!r}")
@@ -71,7 +74,7 @@ def _open(
     used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
     axes = tuple(_axis(file, name, joints[name]) for name in used)
     notes = _notes(file, joints, {*used, *(s.name for s in steps if s.moving)})
-    loops = _loop_notes(Loops(file, frames, joints, base), {*used, *own}, why)
+    loops = _loop_notes(Loops(file, frames, joints, base), {*used, *own})
     return Robot(_title(file), _source(file), base, tip, steps, axes, (*notes, *loops))
 
 
@@ -151,7 +154,7 @@ def _classes(root: Element, name: str | None) -> Sequence[Element] | None:
     return tuple(top) if found is None and name in (None, "", "main") else found
 
 
-def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) -> str:
+def _only_end(path: Path, root: Element, frames: Mapping[str, Frame]) -> str:
     if root.find(".//replicate//body") is not None or root.find(".//attach") is not None:
         raise UnreadableRobot(
             f"{path}: replicates or attaches bodies: save the expanded model and import that, or choose with --tip"
@@ -162,8 +165,7 @@ def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) 
         return ends[0]
     if not ends:
         raise UnreadableRobot(f"{path}: has no bodies")
-    loops = f" (its loops are not rods that meet in one: {why})" if why else ""
-    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips{loops}: choose with --tip: {listed(ends)}")
+    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {listed(ends)}")
 
 
 def _steps(
@@ -287,7 +289,7 @@ def _notes(file: File, joints: Mapping[str, object], passed: Container[str]) -> 
     return tuple(notes)
 
 
-def _loop_notes(loops: Loops, moving: Container[str], why: str) -> Iterator[str]:
+def _loop_notes(loops: Loops, moving: Container[str]) -> Iterator[str]:
     """The notes on the loops that equalities close. moving: the joints that move the chain."""
     inside = [(Loop(f"a {c.tag} of {c.first!r} and {c.second!r}", c.first, c.second), c.joints) for c in loops.closed]
-    yield from loop_notes(loops.file.path, inside, Joints(moving, loops.followers, loops.driven, why))
+    yield from loop_notes(loops.file.path, inside, Joints(moving, loops.followers, loops.driven))
