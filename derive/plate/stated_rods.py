@@ -26,6 +26,8 @@ from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 from derive.plate.legs import about_z, by_angles
 
 _POSES, _SAME, _ROUNDING = 16, 1e-9, 1e-12
+_OF_LARGEST = 1e-14
+"""The share of the largest term of an equation below which another one is rounding."""
 
 
 def with_stated_rods(mechanism: Mechanism) -> Mechanism:
@@ -176,7 +178,7 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     plate = on_plate(*(a / (2 * factor) for a in arm))
     at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
     between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
-    square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
+    square = _without_rounding(mechanism, between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
     length = _root_of(mechanism, square)
     if length is None or not (mechanism.is_platform or _has_a_sign(mechanism, length)):
         return None
@@ -202,11 +204,18 @@ def _root_of(mechanism: Mechanism, square: sp.Expr) -> sp.Expr | None:
     return -length if length.xreplace(nominal).is_negative else length  # a square tells no sign, and a length has one
 
 
-def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
+def _without_rounding(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> sp.Expr:
     """The difference, without terms that are only rounding."""
-    first, second = (sp.expand(e).as_coefficients_dict() for e in (one, other))
-    terms = [(m, first[m] - second[m], abs(first[m]) + abs(second[m])) for m in dict.fromkeys((*first, *second))]
-    return sp.Add(*[m * left for m, left, size in terms if abs(left) > _ROUNDING * size])
+    fixed = {p.symbol: sp.Float(p.nominal) for p in mechanism.parameters if p.fixed is not None} | {DEGREE: sp.pi / 180}
+    numbers: dict[sp.Expr, list[sp.Expr]] = {}
+    for term in (*sp.Add.make_args(sp.expand(one)), *sp.Add.make_args(sp.expand(-other))):
+        number, product = term.as_independent(*(term.free_symbols - {*fixed}), as_Add=False)
+        numbers.setdefault(product, []).append(number)
+    values = {product: [float(n.xreplace(fixed)) for n in some] for product, some in numbers.items()}
+    sizes = {product: sum(map(abs, some)) for product, some in values.items()}
+    least = _OF_LARGEST * max(sizes.values())
+    kept = (p for p in numbers if abs(sum(values[p])) > max(_ROUNDING * sizes[p], least))
+    return sp.Add(*[p * n for p in kept for n in numbers[p]])
 
 
 def _plain(value: sp.Expr) -> sp.Expr:
@@ -238,6 +247,7 @@ def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:
     angles |= {a: rng.uniform(-3.0, 3.0, _POSES) for a in turning}
     turned = {w: (np.cos if w[:3] == "cos" else np.sin)(angles[w[4:]]) for w in words}
     values = {n.name: evaluate(v, turned) for n, v in zip(ROTATION_ENTRIES, by_angles(), strict=True)}
+    values |= {p.symbol.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
     values[DEGREE.name] = np.asarray(np.pi / 180.0)
     for symbol in sorted(one.free_symbols | other.free_symbols, key=str):
         values.setdefault(symbol.name, rng.uniform(0.5, 2.0, _POSES))

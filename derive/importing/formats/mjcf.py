@@ -13,7 +13,17 @@ from xml.etree import ElementTree
 
 from derive.description.joints import Kind
 from derive.importing.formats.bodies import WORLD, File, Frame, frames_of, own_joints, passed, places_of
-from derive.importing.formats.documents import between, direction_rounding, limit, number, numbers, parsed, rounding, shown, whole
+from derive.importing.formats.documents import (
+    between,
+    direction_rounding,
+    limit,
+    number,
+    numbers,
+    parsed,
+    rounding,
+    shown,
+    whole,
+)
 from derive.importing.formats.legs import Meeting, NoRods, meeting_of
 from derive.importing.formats.loops import Joints, Loop, Loops, loop_notes
 from derive.importing.formats.transmissions import Follower, driven
@@ -61,9 +71,7 @@ def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
         raise UnreadableRobot(f"{problem}{why}") from None
 
 
-def _open(
-    file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str
-) -> Robot:
+def _open(file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str) -> Robot:
     """The chain from base to tip."""
     way = passed(frames, base, tip)
     if not way:
