@@ -40,7 +40,7 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     for number, equation in enumerate(mechanism.closure, 1):
         name = str(number) if not {str(number), f"guide_{number}"} & taken else f"closure_{number}"
         stated = sp.sympify(equation)
-        read: Rod | Plane | None = _rod_of(mechanism, name, stated)
+        read: Rod | Plane | None = _rod_in_plane(mechanism, name, stated)
         if mechanism.is_platform:
             read = read or _plane_of(mechanism, name, stated) or _rod_at_half_turns(mechanism, name, stated)
         if read is None:
@@ -156,6 +156,16 @@ def _at(equation: sp.Expr, turns: Sequence[int]) -> tuple[sp.Expr, sp.Expr, sp.P
     if factor == 0 or form.total_degree() != 2 or twice.free_symbols & {*_ORIGIN, _ROOT} or _ROOT in form.free_symbols:
         return None
     return factor, twice, form
+
+
+def _rod_in_plane(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
+    """The same as `_rod_of`; where the point moves in a plane its coordinates are read as x and y."""
+    own = [real(c) for c in mechanism.task.position]
+    if mechanism.is_turning_loop or len(own) != 2:
+        return _rod_of(mechanism, name, equation)
+    read = _rod_of(mechanism, name, equation.xreplace(dict(zip(own, _ORIGIN, strict=False))))
+    back = dict(zip(_ORIGIN, own, strict=False))
+    return None if read is None else replace(read, plate=tuple(v.xreplace(back) for v in read.plate))
 
 
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:

@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from derive.algebra import rings
-from derive.algebra.normal_form import factored, reduce_units
+from derive.algebra.normal_form import factored, factors_of, reduce_units
 from derive.algebra.rings import common_factor, may_be_square, terms_of_products
 from derive.ir.symbols import cosine, real, sine
 from derive.work import TooMuchWork, at_most, counted, spend
@@ -95,6 +95,15 @@ def test_a_fraction_stands_where_there_are_fewer_products() -> None:
     in_metres = sp.Rational(9, 50) * A - B + sp.Rational(13, 625)
     assert factored(in_metres) == in_metres
     assert factored((A + B) / 2).as_coeff_Mul() == (sp.Rational(1, 2), A + B)
+
+
+def test_no_factors_are_sought_of_dozens_of_symbols(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two sums of sixty symbols: to factor their product takes minutes."""
+    many = [real(f"work_{k}") for k in range(60)]
+    product = sp.expand(sp.Add(*many) * sp.Add(*many[::2]) * 6)
+    monkeypatch.setattr("derive.algebra.normal_form.sp.factor", None)
+    assert factors_of(product) == (6, sp.expand(product / 6))
+    assert factored(product) == product
 
 
 def test_polynomials_without_a_common_factor_are_told_apart_at_once(monkeypatch: pytest.MonkeyPatch) -> None:

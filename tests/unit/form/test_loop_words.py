@@ -20,13 +20,17 @@ def short(value: object) -> sp.Float:
     return sp.Float(repr(round(float(value), 6)))  # type: ignore[arg-type]
 
 
-def five_bar(unit: sp.Expr) -> Mechanism:
+def five_bar(unit: sp.Expr, plane: str = "xy", *, is_multiplied_out: bool = False) -> Mechanism:
     left, right = rotary("A1", "left", nominal=125.0), rotary("A2", "right", nominal=55.0)
     ground, first, second, near, far = (short(v * unit) for v in (130, 90, 95, 170, 185))
     ends = [(first * sp.cos(left.symbol), first * sp.sin(left.symbol))]
     ends.append((ground + second * sp.cos(right.symbol), second * sp.sin(right.symbol)))
-    rods = [rod(str(k), end, (X, Y), size) for k, (end, size) in enumerate(zip(ends, (near, far), strict=True), 1)]
-    return Mechanism("Own_Five", (left, right), Task("xy"), rods=tuple(rods))
+    point = [{"x": X, "y": Y, "z": Z}[c] for c in plane]
+    rods = [rod(str(k), end, point, size) for k, (end, size) in enumerate(zip(ends, (near, far), strict=True), 1)]
+    if is_multiplied_out:
+        closure = tuple(sp.expand(r.equation * sp.Rational(7, 3)) for r in rods)
+        return Mechanism("Own_Five", (left, right), Task(plane), closure=closure)
+    return Mechanism("Own_Five", (left, right), Task(plane), rods=tuple(rods))
 
 
 def platform(joints: tuple[Joint, ...], rods: list[Rod], height: sp.Expr) -> Mechanism:
@@ -61,6 +65,12 @@ def operations(mechanism: Mechanism) -> int:
 
 def test_a_five_bar_costs_the_same_in_metres() -> None:
     assert operations(five_bar(MILLIMETRES)) == operations(five_bar(METRES))
+
+
+@pytest.mark.parametrize("plane", ["xz", "yz"])
+def test_equations_in_any_plane_are_rods(plane: str) -> None:
+    words = five_bar(MILLIMETRES, plane, is_multiplied_out=True)
+    assert operations(words) == operations(five_bar(MILLIMETRES))
 
 
 @pytest.mark.slow
