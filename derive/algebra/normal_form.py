@@ -186,8 +186,31 @@ def cancelled(value: sp.Expr) -> sp.Expr:
 
 @counted
 def factored(value: sp.Expr) -> sp.Expr:
-    """A value in factored form. Cached, as `cancelled` is."""
-    return sp.factor(value)
+    """A value in factored form; a sum that has fewer products with its fraction inside has it there. Cached, as
+    `cancelled` is.
+    """
+    found = value if len(value.free_symbols) > _MOST_SYMBOLS else sp.factor(value)
+    number, rest = found.as_coeff_Mul()
+    if not number.is_Rational or number.is_Integer or not rest.is_Add:
+        return found
+    inside = sp.Add(*[number * term for term in rest.args])
+    return inside if _products(inside) <= _products(rest) else found
+
+
+_MOST_SYMBOLS = 30
+"""To look for the factors of a sum of more symbols takes minutes; it stays as it is."""
+
+
+def factors_of(value: sp.Expr) -> tuple[sp.Expr, ...]:
+    """The factors of a value; of a sum of very many symbols its number alone."""
+    many = len(value.free_symbols) > _MOST_SYMBOLS
+    found: tuple[sp.Expr, ...] = value.primitive() if many else sp.Mul.make_args(sp.factor(value))
+    return found
+
+
+def _products(value: sp.Expr) -> int:
+    """The number of terms of a sum that are multiplied by a number."""
+    return sum(not term.is_number and abs(term.as_coeff_Mul()[0]) != 1 for term in value.args)
 
 
 def is_compound(expression: sp.Expr) -> bool:

@@ -8,6 +8,7 @@ from math import comb, isqrt
 from random import Random
 
 import sympy as sp
+from sympy import igcd, ilcm
 from sympy.polys.galoistools import gf_degree, gf_gcd, gf_strip
 from sympy.polys.rings import PolyElement, PolyRing
 
@@ -59,10 +60,13 @@ def _lowered(ring: PolyRing, value: PolyElement, place: int, square: PolyElement
 _PRIME = 2**61 - 1
 _SEED = 37
 _SQUARE_TRIALS = 2
+_LONGEST = 10**6
+"""Coefficients that are more than such a multiple of what they share are those of long decimals, and share nothing."""
 
 
 def common_factor(first: sp.Expr, second: sp.Expr) -> sp.Expr:
-    """The greatest common divisor of two polynomials.
+    """The greatest common divisor of two polynomials; of fractions, too, if it leaves short numbers: 21/50 and 7/20
+    have 7/100, as 420 and 350 have 70, so that a machine has one form in every unit of length.
 
     To find it takes seconds where there are dozens of symbols, and nearly always it is a number. With numbers for all
     symbols but one this shows at once.
@@ -71,14 +75,17 @@ def common_factor(first: sp.Expr, second: sp.Expr) -> sp.Expr:
         return sp.gcd(first, second)
     symbols = sorted(first.free_symbols | second.free_symbols, key=lambda s: s.sort_key())
     one, other = (_ring(tuple(symbols)).from_expr(value) for value in (first, second))
+    numbers = [number for polynomial in (one, other) for number in polynomial.values()]
+    unit = ilcm(1, *[int(number.denominator) for number in numbers])
+    whole = [int(number * unit) for number in numbers]
+    content = igcd(0, *whole)
+    if unit > 1 and max(map(abs, whole)) > _LONGEST * content:
+        unit, content = 1, 1
     values = _drawn(len(symbols))
     if any(_may_share(one, other, values, place) for place in range(len(symbols))):
         spend(len(one) * len(other))
-        return sp.gcd(first, second)
-    numbers = [number for polynomial in (one, other) for number in polynomial.values()]
-    if not numbers or any(number.denominator != 1 for number in numbers):
-        return sp.Integer(1)
-    return sp.Integer(sp.igcd(*[int(number) for number in numbers], 0))
+        return sp.gcd(sp.expand(unit * first), sp.expand(unit * second)) / unit
+    return sp.Rational(content, unit)
 
 
 def may_be_square(value: sp.Expr, angles: Sequence[sp.Symbol]) -> bool:

@@ -140,11 +140,15 @@ def _as_functions(decimals: Sequence[sp.Float]) -> dict[sp.Expr, sp.Expr]:
     sizes = list(dict.fromkeys(map(abs, decimals)))
     for sine, cosine in combinations_with_replacement(sizes, 2):
         if abs(float(sine) ** 2 + float(cosine) ** 2 - 1) < _UNIT:
-            radians = float(sp.atan2(sine, cosine))
-            near = round(radians * 180 / float(sp.pi) * _THOUSANDTHS) * sp.pi / (180 * _THOUSANDTHS)
-            angle = near if abs(radians - float(near)) < _UNIT else sp.Rational(f"{radians:.15f}")
+            angle = exact_angle(float(sp.atan2(sine, cosine)))
             found = {sine: sp.sin(angle), cosine: sp.cos(angle)} | found
     return {d: sp.sign(d) * found[abs(d)] for d in decimals if abs(d) in found}
+
+
+def exact_angle(radians: float) -> sp.Expr:
+    """The thousandths of a degree that a decimal in radians is, else its fraction."""
+    near = round(radians * 180 / float(sp.pi) * _THOUSANDTHS) * sp.pi / (180 * _THOUSANDTHS)
+    return near if abs(radians - float(near)) < _UNIT else sp.Rational(f"{radians:.15f}")
 
 
 def _in_exact_radians(term: sp.Expr) -> sp.Expr:

@@ -5,6 +5,7 @@ One rule a module; each is an identity, which its docstring states. It may impor
 
 chain: the chain, read as lines of its zero pose and written again
 deviations: a serial machine as it is, with its deviations from the drawing as inputs
+directions: the directions of a rod's moved end, whose decimals become exact
 gears: gears that stand in a chain, moved to the joints
 headings: the letter x, y or z along which every line of a chain lies, and the turns between their frames
 inner_names: the names that the inputs of a machine have inside a derivation

@@ -94,14 +94,14 @@ def with_named_loop_angles(mechanism: Mechanism) -> Mechanism:
 
     Each becomes a fixed angle of at most 45 degrees, and right angles; one that SymPy writes as roots stays as it is.
     """
-    if mechanism.chain is not None or mechanism.is_turning_loop:
+    if mechanism.chain is not None:
         return mechanism
     functions = {f for e in mechanism.equations for f in e.atoms(sp.sin, sp.cos) if f.is_number}
     table: dict[sp.Expr, sp.Expr] = {}
     angles: dict[sp.Expr, NamedAngle] = {}
     for one in sorted(functions, key=sp.default_sort_key):
         quarters = sp.Integer(round(float(2 * one.args[0] / sp.pi)))
-        rest = sp.nsimplify(one.args[0] - quarters * sp.pi / 2)
+        rest = sp.expand(without_decimals(one.args[0]) - quarters * sp.pi / 2)
         size = sp.Abs(rest)
         angle = angles.setdefault(size, of_degrees(size * 180 / sp.pi))
         table[one] = one.func(quarters * sp.pi / 2 + sp.sign(rest) * angle.symbol * DEGREE)

@@ -43,9 +43,10 @@ def neighbours(raw: Arm, arm: Arm, names: Sequence[str], limit: float, unit: str
         is_slide = Kind.LINEAR in (arm.lines[k].kind, arm.lines[k + 1].kind)
         apart = stands.distance if stands.distance > raw.rounding else 0.0
         distance = "a slide" if is_slide else f"distance {apart:.6g} {unit}"
-        hints = list(_angle_hints(stands.angle, back.angle, limit))
-        if not is_slide and back.angle > limit:
-            hints += _distance_hints(stands.distance / raw.size, back.distance / arm.size, limit)
+        own = arm.limit(k + 1, limit)
+        hints = list(_angle_hints(stands.angle, back.angle, own))
+        if not is_slide and back.angle > own:
+            hints += _distance_hints(stands.distance / raw.size, back.distance / arm.size, own)
         yield f"  {one}-{other}: {distance}, angle {degrees:.6g}°{'; ' if hints else ''}{'; '.join(hints)}"
 
 
@@ -92,7 +93,7 @@ def closed_form(arm: Arm, names: Sequence[str], limit: float) -> str:
     if not found:
         return "Slides among the axes: most chains with them have a closed form."
     amount, words = min(found)
-    if amount <= max(limit, ROUNDING * 100):
+    if amount <= max(ROUNDING * 100, *(arm.limit(place, limit) for place in range(len(arm.lines)))):
         return f"A closed form is likely: {words}."
     if amount > _NEARLY:
         return "No three neighbouring axes meet in one point or are parallel: a closed form is unlikely."

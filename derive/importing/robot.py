@@ -78,6 +78,8 @@ class Moving:
     offset: float = 0.0
     rounding: float = 0.0
     """The rounding of the offset: see `Turned`."""
+    aslant: float = 0.0
+    """The rounding of its direction: see `Turned`."""
 
     @property
     def turns(self) -> bool:

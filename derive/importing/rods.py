@@ -117,7 +117,7 @@ def _hanger(robot: Robot, rods: Rods, number: int, name: str, snap: float) -> Ha
     raw, stated = arm_of(one), arm_of(put_back)
     arm = _placed(stated, rods.plane)
     off = float(np.linalg.norm(arm.lines[0].direction - stated.lines[0].direction))
-    if off > max(snap, SNAP):
+    if off > max(stated.limit(0, snap), SNAP):
         raise UnreadableRobot(f"{axis.name!r} is not parallel to the other joints of its loop, by {off:.2g} (--snap)")
     chain = simple(arm, (name,), snap, about_z=False)
     squared = (Snapped(f"{name}: read as parallel to the other joints, off", off, True),) if off > ROUNDING else ()

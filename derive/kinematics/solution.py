@@ -17,7 +17,9 @@ from derive.equations.drives import size, slopes
 from derive.equations.machine_checks import with_checks
 from derive.equations.pitch.chain import followed_of
 from derive.equations.problem import Conditioning
+from derive.form.directions import with_exact_directions
 from derive.form.machine import in_form
+from derive.form.numbers import with_named_loop_angles
 from derive.ir.constants import LEAST
 from derive.ir.primitives import Root, Select
 from derive.kinematics.branches.assembly import Assembled, assembled, with_derived_assembly
@@ -84,7 +86,8 @@ def prepared(mechanism: Mechanism, further: Mapping[str, int] | None = None) -> 
     mechanism = in_form(mechanism, further)
     mechanism = with_surplus(mechanism, len(mechanism.solved_joints) - len(jacobian_rows(mechanism)))
     check_joints(mechanism)
-    return with_free_twist(with_positive_lengths(with_stated_rods(with_fixed_point(mechanism))))
+    mechanism = with_named_loop_angles(with_exact_directions(with_stated_rods(with_fixed_point(mechanism))))
+    return with_free_twist(with_positive_lengths(mechanism))
 
 
 def solve_machine(mechanism: Mechanism) -> Solution:

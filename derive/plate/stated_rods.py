@@ -26,6 +26,8 @@ from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES, real
 from derive.plate.legs import about_z, by_angles
 
 _POSES, _SAME, _ROUNDING = 16, 1e-9, 1e-12
+_OF_LARGEST = 1e-14
+"""The share of the largest term of an equation below which another one is rounding."""
 
 
 def with_stated_rods(mechanism: Mechanism) -> Mechanism:
@@ -38,7 +40,7 @@ def with_stated_rods(mechanism: Mechanism) -> Mechanism:
     for number, equation in enumerate(mechanism.closure, 1):
         name = str(number) if not {str(number), f"guide_{number}"} & taken else f"closure_{number}"
         stated = sp.sympify(equation)
-        read: Rod | Plane | None = _rod_of(mechanism, name, stated)
+        read: Rod | Plane | None = _rod_in_plane(mechanism, name, stated)
         if mechanism.is_platform:
             read = read or _plane_of(mechanism, name, stated) or _rod_at_half_turns(mechanism, name, stated)
         if read is None:
@@ -156,6 +158,16 @@ def _at(equation: sp.Expr, turns: Sequence[int]) -> tuple[sp.Expr, sp.Expr, sp.P
     return factor, twice, form
 
 
+def _rod_in_plane(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
+    """The same as `_rod_of`; where the point moves in a plane its coordinates are read as x and y."""
+    own = [real(c) for c in mechanism.task.position]
+    if mechanism.is_turning_loop or len(own) != 2:
+        return _rod_of(mechanism, name, equation)
+    read = _rod_of(mechanism, name, equation.xreplace(dict(zip(own, _ORIGIN, strict=False))))
+    back = dict(zip(_ORIGIN, own, strict=False))
+    return None if read is None else replace(read, plate=tuple(v.xreplace(back) for v in read.plate))
+
+
 def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     """The rod that has this equation but for a constant factor; None if there is none."""
     size = 2 if _is_flat(mechanism, equation) else 3
@@ -176,7 +188,7 @@ def _rod_of(mechanism: Mechanism, name: str, equation: sp.Expr) -> Rod | None:
     plate = on_plate(*(a / (2 * factor) for a in arm))
     at_rest = dict(zip(ROTATION_ENTRIES, sp.eye(3), strict=True)) | {c: sp.Integer(0) for c in coordinates}
     between = sp.Add(*[(p - b) ** 2 for p, b in zip(plate, base, strict=True)])
-    square = _without_rounding(between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
+    square = _without_rounding(mechanism, between.xreplace(at_rest), (expanded / factor).xreplace(at_rest))
     length = _root_of(mechanism, square)
     if length is None or not (mechanism.is_platform or _has_a_sign(mechanism, length)):
         return None
@@ -202,11 +214,18 @@ def _root_of(mechanism: Mechanism, square: sp.Expr) -> sp.Expr | None:
     return -length if length.xreplace(nominal).is_negative else length  # a square tells no sign, and a length has one
 
 
-def _without_rounding(one: sp.Expr, other: sp.Expr) -> sp.Expr:
+def _without_rounding(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> sp.Expr:
     """The difference, without terms that are only rounding."""
-    first, second = (sp.expand(e).as_coefficients_dict() for e in (one, other))
-    terms = [(m, first[m] - second[m], abs(first[m]) + abs(second[m])) for m in dict.fromkeys((*first, *second))]
-    return sp.Add(*[m * left for m, left, size in terms if abs(left) > _ROUNDING * size])
+    fixed = {p.symbol: sp.Float(p.nominal) for p in mechanism.parameters if p.fixed is not None} | {DEGREE: sp.pi / 180}
+    numbers: dict[sp.Expr, list[sp.Expr]] = {}
+    for term in (*sp.Add.make_args(sp.expand(one)), *sp.Add.make_args(sp.expand(-other))):
+        number, product = term.as_independent(*(term.free_symbols - {*fixed}), as_Add=False)
+        numbers.setdefault(product, []).append(number)
+    values = {product: [float(n.xreplace(fixed)) for n in some] for product, some in numbers.items()}
+    sizes = {product: sum(map(abs, some)) for product, some in values.items()}
+    least = _OF_LARGEST * max(sizes.values())
+    kept = (p for p in numbers if abs(sum(values[p])) > max(_ROUNDING * sizes[p], least))
+    return sp.Add(*[p * n for p in kept for n in numbers[p]])
 
 
 def _plain(value: sp.Expr) -> sp.Expr:
@@ -238,6 +257,7 @@ def _is_same(mechanism: Mechanism, one: sp.Expr, other: sp.Expr) -> bool:
     angles |= {a: rng.uniform(-3.0, 3.0, _POSES) for a in turning}
     turned = {w: (np.cos if w[:3] == "cos" else np.sin)(angles[w[4:]]) for w in words}
     values = {n.name: evaluate(v, turned) for n, v in zip(ROTATION_ENTRIES, by_angles(), strict=True)}
+    values |= {p.symbol.name: np.asarray(p.nominal) for p in mechanism.parameters if p.fixed is not None}
     values[DEGREE.name] = np.asarray(np.pi / 180.0)
     for symbol in sorted(one.free_symbols | other.free_symbols, key=str):
         values.setdefault(symbol.name, rng.uniform(0.5, 2.0, _POSES))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import sympy as sp
 from numpy.random import Generator
@@ -91,7 +93,7 @@ def joints_at(
     joints = _solved(closure, joints, pose, parameters, reach if is_one_of_many else None)
     for _ in range(_ROUNDS if is_one_of_many and closure.described.positive else 0):
         negative = closure.positive(joints, pose, parameters)[:, :, 0] <= 0
-        again = (negative @ _touched(closure, joints, pose, parameters)) > 0
+        again = (negative @ touched(closure.positive, joints, pose, parameters)) > 0
         if not again.any():
             break
         joints = np.where(again, _anywhere(closure, reach, rng), joints)
@@ -126,15 +128,15 @@ def _solved(closure: Closure, joints: Array, pose: Array, parameters: Array, lon
     return joints
 
 
-def _touched(closure: Closure, joints: Array, pose: Array, parameters: Array) -> NDArray[np.float64]:
-    """Which joints (columns) a positive quantity (rows) depends on."""
+def touched(of: Callable[..., Array], joints: Array, pose: Array, parameters: Array) -> NDArray[np.float64]:
+    """Which joints (columns) each quantity (rows) of a function of joints, poses and parameters depends on."""
     one = [part[:1] for part in (joints, pose, parameters)]
-    here = closure.positive(*one)[0, :, 0]
+    here = of(*one)[0, :, 0]
     columns = []
     for k in range(joints.shape[1]):
         moved = one[0].copy()
         moved[0, k] += 1.0
-        columns.append(closure.positive(moved, *one[1:])[0, :, 0] != here)
+        columns.append(of(moved, *one[1:])[0, :, 0] != here)
     return np.stack(columns, axis=1).astype(float)
 
 

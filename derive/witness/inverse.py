@@ -17,7 +17,7 @@ from derive.kinematics.kinematics import Kinematics
 from derive.witness.checks import CLOSURE_TOLERANCE, clear_of_zero, how_far, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
-from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home
+from derive.witness.home_samples import joints_at, measured_legs, on_guides, poses_at_home, touched
 from derive.witness.onward import every_root
 from derive.witness.planted import refused_when_planted
 from derive.witness.roots import STARTS, Problem, all_solutions, distinct, is_solution, polished, problem_at, same
@@ -307,12 +307,16 @@ def _home_side(kin: Kinematics, closure: Closure, samples: Samples, row: int) ->
     pose = on_guides(closure, poses_at_home(closure, part.values, part.reach), part.parameters)
     joints = joints_at(kin.mechanism, closure, pose, part.parameters, part.reach, np.random.default_rng(SEED + 5))
     state = (joints, pose, part.parameters)
+    flags = [(k, b.home_flag) for k, b in enumerate(kin.branches) if b.home_flag in part.values]
+    own, signs = [k for k, _ in flags], [1.0 - 2.0 * part.values[flag][0] for _, flag in flags]
+    if flags:  # every leg has two solutions: there may be no start that leads to those of all branches
+        told = closure.indicators(*state)[:, own, 0] * signs > 0
+        apart = touched(closure.indicators, *state)[own] > 0
+        first = [int(np.argmax(told[:, column].all(axis=1))) for column in apart.T]
+        joints[0] = joints[first, range(len(first))]
     closed = np.abs(closure.residual(*state)[:, :, 0]).max(axis=1) < _CLOSED * part.reach**2
     closed &= np.all(closure.positive(*state)[:, :, 0] > 0, axis=1)
-    indicators = closure.indicators(*state)[:, :, 0]
-    for k, branch in enumerate(kin.branches):
-        if branch.home_flag in part.values:
-            closed &= indicators[:, k] * (1.0 - 2.0 * part.values[branch.home_flag]) > 0
+    closed &= np.all(closure.indicators(*state)[:, own, 0] * signs > 0, axis=1)
     sides = np.unique(_sides(closure, joints, pose, part.parameters)[closed])
     if len(sides) != 1:
         raise Disagreement(f"the home pose has {len(sides)} assembly modes, {describe(kin, samples, row)}")

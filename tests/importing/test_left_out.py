@@ -14,7 +14,7 @@ from derive.importing.arms.lines import Arm, arm_of
 from derive.importing.formats.urdf import read_urdf
 from derive.importing.importing import Options
 from derive.pipeline import derive_one
-from tests.importing.kinematics import by_yourdfpy, described, imported_text, refused
+from tests.importing.kinematics import assert_is, by_yourdfpy, described, imported, imported_text, refused
 from tests.importing.robots import COLLECTION, WRITTEN, File, joint, urdf, written
 from tests.machines.made import imported_class
 from tests.orthonormal import random_rotations
@@ -189,6 +189,14 @@ ROWS: Mapping[str, tuple[tuple[str, str], ...]] = {
         ("0 0 0", f"{cos(1.0)!r} 0 {sin(1.0)!r}"),
         ("0 0 0", "1 0 0"),
     ),
+    "an offset wrist": (
+        ("0 0 0.245", "0 0 1"),
+        ("0 0 0", "0 1 0"),
+        ("0 0 0.71", "0 1 0"),
+        ("0 0 0", "1 0 0"),
+        ("0.54 0 0", "0 1 0"),
+        ("0 -0.15 0", "1 0 0"),
+    ),
 }
 """The way to each axis, and its direction, at zero."""
 FILES = tuple(name for name in (*COLLECTION, *WRITTEN) if name != "Fanuc")
@@ -206,7 +214,7 @@ def _file(name: str, folder: Path) -> File:
     return File(path, "link0", f"link{len(ROWS[name]) + 1}")
 
 
-def _joints(arm: Arm, seed: int) -> Iterator[tuple[str, ...]]:
+def _joints(arm: Arm, seed: int, digits: int = 17) -> Iterator[tuple[str, ...]]:
     """The joints of an arm, each at any place on its axis, in a frame that is turned anyhow."""
     rng = np.random.default_rng(seed)
     before = np.eye(4)
@@ -215,18 +223,22 @@ def _joints(arm: Arm, seed: int) -> Iterator[tuple[str, ...]]:
         here[:3, :3], here[:3, 3] = random_rotations(1, rng)[0], line.point + rng.uniform(-0.1, 0.1) * line.direction
         axis = here[:3, :3].T @ line.direction
         kind = "prismatic" if line.kind is Kind.LINEAR else "revolute"
-        yield joint(f"a{k}", kind, *_origin(before, here), axis=" ".join(map(repr, axis.tolist())))
+        yield joint(f"a{k}", kind, *_origin(before, here, digits), axis=_text(axis, digits))
         before = here
-    yield joint("flange", "fixed", *_origin(before, arm.tip))
+    yield joint("flange", "fixed", *_origin(before, arm.tip, digits))
 
 
-def _origin(before: Array, here: Array) -> tuple[str, str]:
+def _text(numbers: Array, digits: int) -> str:
+    return " ".join(f"{number:.{digits}g}" for number in numbers)
+
+
+def _origin(before: Array, here: Array, digits: int) -> tuple[str, str]:
     """The place of a frame in the one before: xyz, and turns about fixed x, y, z."""
     way = np.linalg.inv(before) @ here
     r = way[:3, :3]
     across = np.hypot(r[0, 0], r[1, 0])
-    turns = np.arctan2(r[2, 1], r[2, 2]), np.arctan2(-r[2, 0], across), np.arctan2(r[1, 0], r[0, 0])
-    return " ".join(map(repr, way[:3, 3].tolist())), " ".join(repr(float(t)) for t in turns)
+    turns = np.array([np.arctan2(r[2, 1], r[2, 2]), np.arctan2(-r[2, 0], across), np.arctan2(r[1, 0], r[0, 0])])
+    return _text(way[:3, 3], digits), _text(turns, digits)
 
 
 @pytest.mark.slow
@@ -240,3 +252,18 @@ def test_a_description_does_not_depend_on_the_frames_of_the_file(name: str, tmp_
         found = imported_text(tmp_path / "arm.urdf", urdf("arm", *_joints(arm, seed)))
         texts.add(found.text.split('"""', 2)[2])
     assert len(texts) == 1
+
+
+@pytest.mark.parametrize("digits", [6, 9, 12])
+@pytest.mark.parametrize("name", ["an offset wrist", "UR5e"])
+def test_what_frames_have_rounded_makes_no_other_chain(name: str, digits: int, tmp_path: Path) -> None:
+    """In frames at any angle no number is a rounded right angle: the turns between two axes are rounded together."""
+    file = _file(name, tmp_path)
+    arm = arm_of(read_urdf(file.path, file.base, file.tip, 1.0))
+    path, exact = tmp_path / "arm.urdf", imported(file.path, file.base, file.tip)
+    for seed in range(SEEDS):
+        found = imported_text(path, urdf("arm", *_joints(arm, seed, digits)))
+        chains = [one.chain.pieces for one in (found, exact) if one.chain is not None]
+        own, stated = ([(p.motion, p.letter, p.drives) for p in pieces] for pieces in chains)
+        assert own == stated and found.bounds.rotation <= 100.0 * 0.1**digits
+        assert_is(found, tmp_path, by_yourdfpy(path, "link0", f"link{len(arm.lines) + 1}"))

@@ -266,4 +266,24 @@ def test_other_loops_are_refused_with_what_is_missing(name: str, tmp_path: Path)
     assert old in FIVE_BAR
     tip = "knee" if "knee" in new else "tool"
     said = refused(tmp_path / "loop.xml", FIVE_BAR.replace(old, new), Options(tip=tip))
-    assert re.search(r"passive.*no rods that meet in the tip: .*describe it with rods", said) and sentence in said
+    assert re.search(r"passive.*describe it with rods.*no rods that meet in the tip: ", said) and sentence in said
+
+
+def test_an_axis_of_five_digits_in_a_turned_frame_is_parallel_to_the_others(tmp_path: Path) -> None:
+    old = '<body name="arm2" pos="0.05 0 0.01"><joint name="m2"/><body name="rod2" pos="0 0.12 0">'
+    new = (
+        '<body name="arm2" pos="0.05 0 0.01" euler="40 0 0"><joint name="m2" axis="0 0.64279 0.76604"/>'
+        '<body name="rod2" pos="0 0.0919253 -0.0771345" euler="-40 0 0">'
+    )
+    assert old in FIVE_BAR
+    found = imported_text(tmp_path / "loop.xml", FIVE_BAR.replace(old, new), tip="tool")
+    assert found.bounds.position <= 0.01
+    lengths = [p.nominal for p in described(found, tmp_path).parameters]
+    plain = [p.nominal for p in described(imported_text(tmp_path / "plain.xml", FIVE_BAR), tmp_path).parameters]
+    assert lengths == pytest.approx(plain, abs=0.01)
+
+
+def test_balls_whose_rods_do_not_meet_are_refused_with_what_is_missing(tmp_path: Path) -> None:
+    text = FIVE_BAR.replace('<joint name="p1"/>', '<joint name="p1" type="ball"/>')
+    said = refused(tmp_path / "loop.xml", text, Options(tip="tool"))
+    assert "'p1' turns freely about a point" in said and "no rods that meet in the tip: 2 rods meet in space" in said

@@ -14,7 +14,8 @@ from string import ascii_lowercase
 import numpy as np
 
 from derive.description.joints import Kind
-from derive.importing.robot import Array, Moving, Robot, about
+from derive.importing.formats.documents import COARSE
+from derive.importing.robot import Array, Moving, Robot, Shifted, about
 
 ROUNDING = 2e-14
 """Below this share a difference is the rounding of our own calculation, and is not listed."""
@@ -46,6 +47,14 @@ class Arm:
     """
     rounding: float
     """A length below which differences are the rounding of our own calculation."""
+    aslant: tuple[float, ...]
+    """The largest angles (radians) by which the file has rounded each line against the one before it (the first one
+    against the base), then the tip against the last line.
+    """
+
+    def limit(self, place: int, stated: float) -> float:
+        """The limit of what is snapped between two lines, where more was stated than 0: at least what is rounded."""
+        return max(stated, self.aslant[place]) if stated > 0.0 else 0.0
 
 
 def arm_of(robot: Robot) -> Arm:
@@ -53,20 +62,25 @@ def arm_of(robot: Robot) -> Arm:
     number = {axis.name: k for k, axis in enumerate(robot.axes)}
     frame, written = np.eye(4), 0.0
     lines: list[Line] = []
+    aslant, rounded = list[float](), 0.0
     for step in robot.steps:
         for place in step.places:
             matrix = place.matrix()
+            if not isinstance(place, Shifted) and place.rounding < COARSE:
+                rounded += place.rounding
             frame = frame @ matrix
             written += float(np.linalg.norm(matrix[:3, 3]))
         if step.moving is not None:
             direction = frame[:3, :3] @ np.array(step.moving.direction)
             drives = tuple((number[name], multiplier) for name, multiplier in step.moving.drives)
             if drives:
+                aslant.append(rounded + step.moving.aslant)
+                rounded = step.moving.aslant
                 lines.append(Line(step.moving.kind, frame[:3, 3].copy(), direction, drives))
             frame = frame @ motion(step.moving, step.moving.offset)
     lengths = (_way(lines, frame[:3, 3]), float(np.linalg.norm(frame[:3, 3])))
     size = next((length for length in lengths if length > _SMALLEST), 1.0)
-    return Arm(tuple(lines), frame, size, ROUNDING * (size + written))
+    return Arm(tuple(lines), frame, size, ROUNDING * (size + written), (*aslant, rounded))
 
 
 def _way(lines: Sequence[Line], tip: Array) -> float:

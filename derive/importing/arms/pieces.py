@@ -79,7 +79,7 @@ def simple(arm: Arm, axes: Sequence[str], limit: float, *, about_z: bool) -> Sim
     for _ in range(_ROUNDS):
         read = tuple(_pieces(normal_factors(own, about_z=about_z), symbols))
         moved += _listed(_rounded(before, read, len(axes)), arm)
-        pieces, found = _snapped(read, axes, max(limit * arm.size, arm.rounding), min(limit, SNAP))
+        pieces, found = _snapped(read, axes, arm, limit)
         moved += _listed(found, arm)
         if len(pieces) == len(read):
             break
@@ -105,17 +105,18 @@ def _listed(moved: Sequence[Snapped], arm: Arm) -> list[Snapped]:
 
 
 def _snapped(
-    pieces: Sequence[Piece], axes: Sequence[str], smallest: float, narrow: float
+    pieces: Sequence[Piece], axes: Sequence[str], arm: Arm, limit: float
 ) -> tuple[tuple[Piece, ...], list[Snapped]]:
     """The pieces with simple angles, and without what is nearly zero; and the changes."""
-    places = turns(pieces, axes)
+    places, limits = turns(pieces, axes), _limits(arm, limit)
     kept: list[Piece] = []
     moved: list[Snapped] = []
     for piece in pieces:
         is_turn = piece.motion is Motion.TURN
         near = nearest_angle(piece.constant) if is_turn else 0.0
         amount = abs(piece.constant - near)
-        if amount <= (max(narrow, _ANGLE) if is_turn else smallest):
+        narrow, wide = limits[min(piece.place, len(limits) - 1)]
+        if amount <= (max(narrow, _ANGLE) if is_turn else max(wide * arm.size, arm.rounding)):
             is_tip = piece.place == len(places)
             what = ("orientation" if is_tip else "direction") if is_turn else "position"
             moved.append(Snapped(f"{'tip' if is_tip else places[piece.place]}: its {what}", amount, is_turn))
@@ -123,6 +124,16 @@ def _snapped(
         if piece.drives or piece.constant != 0.0:
             kept.append(piece)
     return tuple(kept), moved
+
+
+def _limits(arm: Arm, stated: float) -> list[tuple[float, float]]:
+    """The limits for angles and, as shares of the size, for lengths: in front of every turn, and behind the last."""
+    found = [(0.0, 0.0)]
+    for place, line in enumerate([*arm.lines, None]):
+        angle, length = found[-1]
+        found[-1] = max(angle, arm.limit(place, min(stated, SNAP))), max(length, arm.limit(place, stated))
+        found += [(0.0, 0.0)] if line is not None and line.kind is Kind.ROTARY else []
+    return found
 
 
 def turns(pieces: Sequence[Piece], axes: Sequence[str]) -> list[str]:

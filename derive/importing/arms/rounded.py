@@ -43,14 +43,15 @@ def _place(step: Step, place: Place, limit: float, moved: list[Snapped]) -> Plac
     if isinstance(place, Shifted):
         return place
     if isinstance(place, Turned):
-        return replace(place, angle=_angle(step.name, place.angle, place.rounding, limit, moved))
+        angle = _angle(step.name, place.angle, place.rounding, limit, moved)
+        return replace(place, angle=angle, rounding=place.rounding if angle == place.angle else 0.0)
     stated = np.array(place.rows)
     simple, words = _simple(stated, place.rounding, limit)
     amount = angle_between(simple, stated)
     if amount > ROUNDING:
         moved.append(Snapped(f"{step.name}: its orientation {words}", amount, True))
     first, second, third = (_triple(row) for row in simple)
-    return replace(place, rows=(first, second, third))
+    return replace(place, rows=(first, second, third), rounding=0.0 if words else place.rounding)
 
 
 def _triple(row: Array) -> Triple:

@@ -46,7 +46,8 @@ def angle_between(first: Array, second: Array) -> float:
 
 
 def aligned(arm: Arm, names: Sequence[str], limit: float) -> tuple[Arm, tuple[Snapped, ...]]:
-    """The arm with neighbouring axes at exact multiples of 15 degrees, and the changes. limit: in radians.
+    """The arm with neighbouring axes at exact multiples of 15 degrees, and the changes. limit: in radians, unless the
+    file has rounded more.
 
     The later axis is turned about the common normal, together with all that it carries. A turn about an axis itself is
     an offset of its joint: no structure needs that, so it stays.
@@ -57,7 +58,7 @@ def aligned(arm: Arm, names: Sequence[str], limit: float) -> tuple[Arm, tuple[Sn
         before = arm.lines[place - 1].direction
         after = arm.tip[:3, _column(arm, before)] if is_tip else arm.lines[place].direction
         turn, amount, angle = _to_simple(before, after)
-        if ROUNDING < amount <= limit:
+        if ROUNDING < amount <= arm.limit(place, limit):
             there = arm.tip[:3, 3] if is_tip else way_places(arm.lines, arm.tip[:3, 3])[place]
             arm = _turned(arm, place, turn, there)
             pair = f"{names[place - 1]}-{'tip' if is_tip else names[place]}"

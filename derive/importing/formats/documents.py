@@ -130,6 +130,11 @@ def roundings(element: Element, attribute: str, count: int, with_coarse: bool = 
     return tuple(rounding(word, with_coarse) for word in words) if words else (0.0,) * count
 
 
+def direction_rounding(element: Element, attribute: str, size: float) -> float:
+    """The largest angle (radians) by which the file has rounded a direction of that size."""
+    return math.hypot(*roundings(element, attribute, 3)) / size
+
+
 def whole(path: Path, root: Element) -> Element:
     """The root with the children of every included file where its `include` stood; each file may come once.
 

@@ -30,8 +30,6 @@ class Joints:
     used: Container[str]
     followers: Container[str | None]
     driven: Container[str | None]
-    no_rods: str = ""
-    """What keeps the loops that bind the chain from being rods that meet in the tip."""
 
 
 def loop_notes(path: Path, loops: Iterable[tuple[Loop, Sequence[str]]], joints: Joints) -> Iterator[str]:
@@ -44,8 +42,7 @@ def loop_notes(path: Path, loops: Iterable[tuple[Loop, Sequence[str]]], joints: 
         if is_followed(inside, joints.followers):
             yield f"Not read, because its joints follow each other: {closed}."
         elif any(name in joints.used for name in inside):
-            why = f" (no rods that meet in the tip: {joints.no_rods})" if joints.no_rods else ""
-            raise UnreadableRobot(f"{path}: {closed}{_passive(inside, joints)}{why}: {_REMEDY}")
+            raise UnreadableRobot(f"{path}: {closed}{_passive(inside, joints)}: {_REMEDY}")
         elif inside:
             yield f"Not read, because no joint between base and tip is in it: {closed}."
 

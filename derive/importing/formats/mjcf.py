@@ -13,7 +13,17 @@ from xml.etree import ElementTree
 
 from derive.description.joints import Kind
 from derive.importing.formats.bodies import WORLD, File, Frame, frames_of, own_joints, passed, places_of
-from derive.importing.formats.documents import between, limit, number, numbers, parsed, rounding, shown, whole
+from derive.importing.formats.documents import (
+    between,
+    direction_rounding,
+    limit,
+    number,
+    numbers,
+    parsed,
+    rounding,
+    shown,
+    whole,
+)
 from derive.importing.formats.legs import Meeting, NoRods, meeting_of
 from derive.importing.formats.loops import Joints, Loop, Loops, loop_notes
 from derive.importing.formats.transmissions import Follower, driven
@@ -54,14 +64,15 @@ def read_mjcf(path: Path, base: str | None, tip: str | None, scale: float) -> Ro
         if (meeting := meeting_of(Loops(file, frames, joints, base), tip)) is not None:
             return _with_rods(file, frames, joints, base, tip, meeting)
     except NoRods as problem:
-        why = str(problem)
-    return _open(file, frames, joints, base, tip or _only_end(path, file.root, frames, why), why)
+        why = f"; its loops are no rods that meet in the tip: {problem}"
+    try:
+        return _open(file, frames, joints, base, tip or _only_end(path, file.root, frames))
+    except UnreadableRobot as problem:
+        raise UnreadableRobot(f"{problem}{why}") from None
 
 
-def _open(
-    file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str, why: str
-) -> Robot:
-    """The chain from base to tip. why: what its loops lack, to be a machine of rods."""
+def _open(file: File, frames: Mapping[str, Frame], joints: Mapping[str, dict[str, str]], base: str, tip: str) -> Robot:
+    """The chain from base to tip."""
     way = passed(frames, base, tip)
     if not way:
         raise UnreadableRobot(f"{file.path}: base and tip are the same body, {base!r}")
@@ -71,7 +82,7 @@ def _open(
     used = dict.fromkeys(name for s in steps if s.moving for name, _ in s.moving.drives)
     axes = tuple(_axis(file, name, joints[name]) for name in used)
     notes = _notes(file, joints, {*used, *(s.name for s in steps if s.moving)})
-    loops = _loop_notes(Loops(file, frames, joints, base), {*used, *own}, why)
+    loops = _loop_notes(Loops(file, frames, joints, base), {*used, *own})
     return Robot(_title(file), _source(file), base, tip, steps, axes, (*notes, *loops))
 
 
@@ -151,7 +162,7 @@ def _classes(root: Element, name: str | None) -> Sequence[Element] | None:
     return tuple(top) if found is None and name in (None, "", "main") else found
 
 
-def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) -> str:
+def _only_end(path: Path, root: Element, frames: Mapping[str, Frame]) -> str:
     if root.find(".//replicate//body") is not None or root.find(".//attach") is not None:
         raise UnreadableRobot(
             f"{path}: replicates or attaches bodies: save the expanded model and import that, or choose with --tip"
@@ -162,8 +173,7 @@ def _only_end(path: Path, root: Element, frames: Mapping[str, Frame], why: str) 
         return ends[0]
     if not ends:
         raise UnreadableRobot(f"{path}: has no bodies")
-    loops = f" (its loops are not rods that meet in one: {why})" if why else ""
-    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips{loops}: choose with --tip: {listed(ends)}")
+    raise UnreadableRobot(f"{path}: has {len(ends)} possible tips: choose with --tip: {listed(ends)}")
 
 
 def _steps(
@@ -195,7 +205,9 @@ def _joint_steps(file: File, name: str, stated: Mapping[str, str], followers: Ma
     by = driven(file.path, name, followers)
     along: Triple = (direction[0] / size, direction[1] / size, direction[2] / size)
     off = by.rounding + _start_rounding(file, name, stated)
-    moving = Moving(kind, along, by.drives, by.offset - _start(file, name, stated), off)
+    moving = Moving(
+        kind, along, by.drives, by.offset - _start(file, name, stated), off, direction_rounding(element, "axis", size)
+    )
     return [Step(name, (Shifted((x, y, z)),), moving), Step(name, (Shifted((-x, -y, -z)),))]
 
 
@@ -285,7 +297,7 @@ def _notes(file: File, joints: Mapping[str, object], passed: Container[str]) -> 
     return tuple(notes)
 
 
-def _loop_notes(loops: Loops, moving: Container[str], why: str) -> Iterator[str]:
+def _loop_notes(loops: Loops, moving: Container[str]) -> Iterator[str]:
     """The notes on the loops that equalities close. moving: the joints that move the chain."""
     inside = [(Loop(f"a {c.tag} of {c.first!r} and {c.second!r}", c.first, c.second), c.joints) for c in loops.closed]
-    yield from loop_notes(loops.file.path, inside, Joints(moving, loops.followers, loops.driven, why))
+    yield from loop_notes(loops.file.path, inside, Joints(moving, loops.followers, loops.driven))

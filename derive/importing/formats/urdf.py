@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 from derive.description.joints import Kind
 from derive.importing.formats.documents import (
     between,
+    direction_rounding,
     limit,
     number,
     numbers,
@@ -127,7 +128,8 @@ def _step(path: Path, joint: Element, followers: Mapping[str, Follower], scale: 
     if kind is None:
         return Step(name, places)
     by = driven(path, name, followers)
-    return Step(name, places, Moving(kind, _direction(path, joint, name), by.drives, by.offset, by.rounding))
+    along, aslant = _direction(path, joint, name)
+    return Step(name, places, Moving(kind, along, by.drives, by.offset, by.rounding, aslant))
 
 
 def _kind(path: Path, joint: Element) -> Kind | None:
@@ -157,13 +159,15 @@ def places_of(path: Path, element: Element, what: str, scale: float) -> tuple[Pl
     return (Shifted((x * scale, y * scale, z * scale)), *turns)
 
 
-def _direction(path: Path, joint: Element, name: str) -> Triple:
+def _direction(path: Path, joint: Element, name: str) -> tuple[Triple, float]:
+    """The direction of a joint, and the angle by which the file has rounded it."""
     axis = joint.find("axis")
     stated = (1.0, 0.0, 0.0) if axis is None else numbers(path, axis, "xyz", f"joint {name!r}", (1.0, 0.0, 0.0))
     size = math.sqrt(sum(v * v for v in stated))
     if size < 1e-9:
         raise UnreadableRobot(f"{path}: joint {name!r}: its axis has no direction")
-    return (stated[0] / size, stated[1] / size, stated[2] / size)
+    rounded = 0.0 if axis is None else direction_rounding(axis, "xyz", size)
+    return (stated[0] / size, stated[1] / size, stated[2] / size), rounded
 
 
 def _followers(path: Path, joints: Mapping[str, Element], passed: Sequence[str], scale: float) -> dict[str, Follower]:

@@ -20,7 +20,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.algebra.normal_form import cancelled, linear_coefficients
+from derive.algebra.normal_form import cancelled, factors_of, linear_coefficients
 from derive.algebra.rings import common_factor
 from derive.equations.problem import Binding, Conditioning, Equation, Problem
 from derive.ir.program import Let
@@ -60,7 +60,7 @@ def scaled_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[B
 def _without_factor(problem: Problem, row: Row) -> tuple[Row, sp.Expr]:
     """The row, divided by a common factor of its coefficients that never vanishes, and this factor."""
     a, b, e = row
-    factors = sp.Mul.make_args(sp.factor(common_factor(a, b)))
+    factors = factors_of(common_factor(a, b))
     factor = sp.Mul(*[f for f in factors if not f.is_number and problem.is_never_zero(f)])
     content = sp.Mul(*[abs(f.as_coeff_Mul()[0]) for v in (a, b) for f in sp.Add.make_args(sp.expand(v))][:1])
     factor *= content

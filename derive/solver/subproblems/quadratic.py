@@ -25,7 +25,7 @@ def quadratic(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Bin
     """Every length that one quadratic equation determines up to a sign."""
     for equation in equations:
         unknowns = problem.unknowns_of(equation.expression)
-        if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
+        if len(unknowns) != 1 or unknowns[0] not in problem.lengths or not equation.expression.is_polynomial(*unknowns):
             continue
         poly = sp.Poly(equation.expression, unknowns[0])
         if poly.degree() == 2 and problem.is_never_zero(poly.coeff_monomial(unknowns[0] ** 2)):

@@ -15,11 +15,11 @@ _COORDINATES = {real(c) for c in COORDINATE_NAMES}
 
 
 def as_fractions(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with fractions for the decimals at the ends of its rods, which their equations subtract; each
+    """The mechanism with fractions for the decimals of its rods, which their equations subtract and square; each
     equation of a point that has a root is multiplied by that with the other sign of it, and has none.
     """
-    ends = [(tuple(map(without_decimals, r.base)), tuple(map(without_decimals, r.plate))) for r in mechanism.rods]
-    rods = (replace(r, base=b, plate=p) for r, (b, p) in zip(mechanism.rods, ends, strict=True))
+    ends = [(r, tuple(map(without_decimals, r.base)), tuple(map(without_decimals, r.plate))) for r in mechanism.rods]
+    rods = (replace(r, base=b, plate=p, length=without_decimals(sp.sympify(r.length))) for r, b, p in ends)
     stated = map(sp.sympify, mechanism.closure)
     closure = mechanism.closure if mechanism.is_platform else tuple(map(_without_roots, stated))
     return replace(mechanism, rods=tuple(rods), closure=closure)
@@ -37,7 +37,9 @@ def _without_roots(equation: sp.Expr) -> sp.Expr:
 def is_rounded(machine: Mechanism, described: Mechanism) -> bool:
     """Whether numbers of the machine were computed of those of the description, other than by sums."""
     if described.chain is None:
-        long = (d for e in described.closure for d in e.atoms(sp.Float) if without_decimals(d).q > STATED)
+        stated = (*described.closure, *[v for r in described.rods for v in r.base])
+        numbers = (d for e in stated for d in sp.sympify(e).atoms(sp.Float, sp.Rational))
+        long = (d for d in numbers if without_decimals(d).q > STATED)
         return any(long) or any(sp.sympify(e).has(sp.Float) for e in machine.equations)
     turns = [number_in(f.amount) for f in described.chain.factors if f.motion is Motion.TURN]
     shifts = [f.amount for f in described.chain.factors if f.motion is Motion.SHIFT]

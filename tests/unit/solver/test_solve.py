@@ -222,6 +222,7 @@ UNSOLVED = {
         Case(plane((L1, A1), (L2, A1 + A2), (K, A1 + A2 + A3)), (A1, A2, A3)),
         "the closure does not determine a1, a2, a3: 3 unknowns in 2 equations (first, second) leave 1 free to move",
     ),
+    "a length beside its own sine": (Case({"x": P * sp.sin(P) - K}, (), (P,)), "no subproblem determines p"),
     "an angle of which only the turns count": (Case({"x": K * A1}, (A1,)), "no subproblem determines a1"),
 }
 

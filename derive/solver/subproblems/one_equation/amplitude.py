@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra.normal_form import cancelled, reduce_units
+from derive.algebra.normal_form import cancelled, factors_of, reduce_units
 from derive.algebra.rings import common_factor
 from derive.equations.problem import Equation, Problem
 from derive.ir.constants import DEGREE, FREE_ANGLE, SHORTEST_LINK
@@ -52,7 +52,7 @@ def amplitude_of(problem: Problem, equation: Equation, angle: sp.Symbol, row: Ro
     a, b, e = row
     naming = Naming(problem, equation.lets)
     determinant = a * sine(angle) - b * cosine(angle)
-    shared = sp.Mul.make_args(sp.factor(common_factor(a, b)))
+    shared = factors_of(common_factor(a, b))
     common = sp.Mul(*[f for f in shared if f.is_positive])  # dividing by it keeps every sign
     along, across = cancelled(a / common), cancelled(b / common)
     is_fixed = common.is_number or problem.is_never_zero(common)
