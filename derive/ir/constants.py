@@ -75,8 +75,12 @@ OFTEN = 4
 """It has come often enough to a pose to which it has come so often."""
 SAME_POSE = sp.Float("1e-5")
 """Poses are one where they differ by less, of the size of the machine and of the entries of a rotation."""
+STARTS = 13
+"""The values of nearly free angles, all around the circle, from which steps towards a pose are taken."""
 SCANNED = 61
 """The values of free angles that are tried, all around the circle, to find the start of which one step leaves least."""
+NEAR = sp.Float("1e-2")
+"""Values beside the nearest are tried if one step from it leaves no larger an error than this."""
 REFINED = 52
 """So many more beside the nearest, at half the distance each second time: up to 1e-7 radians. The error grows with the
 square of the distance where a link is stretched, so that the nearest is met within `BOUNDARY`.
@@ -86,9 +90,15 @@ LATTICE = 17
 several free angles are a lattice. It is prime to `SCANNED`.
 """
 PASSES = 64
-"""The largest number of steps from each start: next to a double root every step leaves a third of the error."""
+"""The largest number of steps from one start: next to a double root every step leaves a third of the error."""
 STALLED = sp.Float("0.999")
 """A step towards a pose that leaves more than this share of the error makes hardly any progress."""
+STALLS = 20
+"""A start is given up behind so many steps that came hardly nearer to the pose."""
+HARDLY_NEARER = sp.Float("0.99")
+"""A step came hardly nearer that leaves more than this share of the least error so far."""
+MOST_STEPS = 450
+"""The largest number of steps from all starts together."""
 COST_OF_A_STALL = 8
 """As many steps are given up for it: a pose that the machine does not have ends after a few."""
 LONGEST_STEP = sp.Rational(1, 2)

@@ -5,19 +5,21 @@ told by few entries of the rotation, which near one have lost the digits of its 
 free moves to where the later joints have solutions, however far the reference is.
 """
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from softkin import Frame, Status
 
+from tests.catalogue.closure import Closure
 from tests.machines.both import inverse_in_both
 from tests.machines.chain_machines import WRIST_BEYOND_QUARTIC
 from tests.machines.collection import COSTLY, MACHINES
 from tests.machines.free_machines import FREED
 from tests.machines.grid import corners, every_pose_is_met, grid
 from tests.machines.made import Array, Made, made
-from tests.machines.parallel_machines import PARALLEL
+from tests.machines.parallel_machines import METRES, PARALLEL
 from tests.machines.spoken import answered
 
 EVERY_TWELFTH = 12
@@ -66,6 +68,38 @@ def test_where_three_singularities_meet(name: str) -> None:
     machine = made(name)
     axes = np.array([ALONE[name]]) + machine.closure.offsets
     every_pose_is_met(machine, axes, axes, 1e-10)
+
+
+IN_PLANE = (
+    (90.0, -180.0, -180.0, 1e-12, 179.999999, 90.0), (-98.7119860657112, 180.0, 0.0, 180.0, -179.99999999999, 1e-5),
+    (90.0, 180.0, 0.0, -180.0, 1e-3, 0.0), (89.9999999999, 1e-8, -1e-9, -180.0, 180.0001, 0.0),
+    (90.000000001, -179.999999999, 0.0, 180.0, -1e-11, -90.0), (90.0, 0.0, -180.0, 179.9999999999, 0.01, 0.0),
+    (89.999999999999, 0.0, 180.00001, 180.0, 180.0, 180.0), (-1e-11, 180.0, 180.0, 180.0, -180.0, 180.0001),
+)  # fmt: skip
+STRAIGHT = (
+    (90.0, -89.9999, 1e-5, 1e-11, 179.999999999999, -37.984772097317), (-90.001, 180.0, 0.0, 0.0, 1e-5, -89.9),
+    (90.0000000001, -89.99999999999, 1e-6, -1e-9, -180.0, 180.0), (180.0, -0.1, 0.1, 0.0, 0.0, 180.0),
+    (0.0, -180.0, 0.0, 0.0, -179.999999999999, 90.000000000001), (90.0, -90.0, 0.0, 1e-12, 180.0, 180.0),
+)  # fmt: skip
+AT_ZERO = {"its own links": ({}, IN_PLANE), "equal links": ({p.name: 0.3 for p in METRES}, STRAIGHT)}
+"""Joints (degrees), asked from zero. The first: the wrist is on axis 1, or axis 6 along axis 4, and the pose is met
+next to one value of a free axis alone, where another one is free, too. The second: with equal links the whole arm is
+straight, and steps change its reach by so little that a pivot was taken for zero.
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("links", AT_ZERO)
+def test_three_parallel_axes_in_one_plane_from_zero(links: str) -> None:
+    machine = made("arm with three parallel axes, in one plane")
+    given, joints = AT_ZERO[links]
+    robot = type(machine.robot)(**{**machine.robot.parameters, **given})
+    machine = replace(machine, robot=robot, closure=Closure(machine.mechanism, robot.parameters))
+    axes = np.array(joints) + machine.closure.offsets
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, machine.closure.offsets)
+    assert (statuses == Status.OK).all()
+    assert machine.error(found, *machine.closure.poses(axes)).max() <= 1e-11
 
 
 @pytest.mark.parametrize("name", ["slide that a head points, beside its axis"])

@@ -5,9 +5,9 @@ the damping d is a share of its size. A fold or a free angle is no special case:
 move. A solution counts if its error is rounding, and no branch has the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
-them turned to where one step leaves the least error, of many values around the circle. If the steps meet
-the pose on another branch, nearly free angles are known from there, and the closed form is taken again; if that
-leads to the same branch, the joint of its two roots is mirrored about the start.
+them turned to where one step leaves the least error, of many values around the circle, at last at some of these. If
+the steps meet the pose on another branch, nearly free angles are known from there, and the closed form is taken again;
+if that leads to the same branch, the joint of its two roots is mirrored about the start.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from derive.geometry.frames import Motion
 from derive.ir.constants import (
     BOUNDARY,
     CONVERGED,
-    LEAST_DAMPING,
     LONGEST_STEP,
+    MOST_STEPS,
     NEARLY,
     PASSES,
-    REFINED,
-    SCANNED,
+    PIVOT,
     SHARE_OF_DAMPING,
+    STALLS,
 )
 from derive.ir.passes import normalise
 from derive.ir.primitives import NearestPeriod, Root, Select, ToReal, larger
@@ -47,6 +47,7 @@ from derive.kinematics.lost_digits.starts import (
     FREE_TURN,
     GOAL,
     IS_MET,
+    LAST,
     LEFT,
     LEFT_NOW,
     LEFT_OVER,
@@ -57,11 +58,11 @@ from derive.kinematics.lost_digits.starts import (
     NEAREST_TURN,
     NEAREST_TURN_NOW,
     SCAN_ENDS,
+    SCANS,
     STEP,
     TURN,
     closed_form,
     ending,
-    is_scan,
     next_attempt,
     refines,
     tried,
@@ -126,7 +127,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
         state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE, *states),
         start=(
             *map(started, joints),
-            sp.Integer(PASSES),
+            sp.Integer(STALLS),
             sp.Integer(-moves),
             FIRST,
             FIRST,
@@ -138,17 +139,17 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
         step=tuple(s for s in step if isinstance(s, Let | Solve)),
         following=(
             *(_next(machine, j, at_reference.get(j, starts[j])) for j in joints),
-            Select(ANOTHER, Select(is_scan(following), _ZERO, sp.Integer(PASSES)), LEFT_NOW),
-            Select(ENDS, sp.Integer(SCAN_ENDS + 1), following),
-            Select(sp.Or(ANOTHER, MIRRORS), FIRST, real("error")),
+            Select(ANOTHER, Select(SCANS, _ZERO, sp.Integer(STALLS)), LEFT_NOW),
+            Select(ENDS, Select(SCANS, sp.Integer(SCAN_ENDS), sp.Integer(LAST + 1)), following),
+            Select(sp.Or(ANOTHER, MIRRORS), FIRST, Select(sp.Lt(real("error"), BEFORE), real("error"), BEFORE)),
             NEAREST_NOW,
             NEAREST_TURN_NOW,
             FREE_TURN,
             Select(refines(following), -BESIDE / Select(sp.Gt(BESIDE, 0), _ONE, sp.Integer(2)), BESIDE),
             *(_next_share() for _ in states),
         ),
-        done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, SCAN_ENDS)), ENDS),
-        limit=(3 + moves) * (PASSES + 1) + SCANNED + REFINED,
+        done=sp.Or(IS_MET, sp.And(ANOTHER, sp.Gt(following, LAST)), sp.And(ENDS, sp.Not(SCANS))),
+        limit=MOST_STEPS + moves * (PASSES + 1),
         otherwise=None,
         note="steps of damped least squares on the closure, from one start after the other",
     )
@@ -274,13 +275,16 @@ def _step(machine: Machine) -> list[Statement]:
     product, damping = jacobian * jacobian.T, real("damping")
     names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i in range(size) for j in range(i, size)}
     matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
+    squares = [real(f"square_{k + 1}") for k in range(size)]
+    share = SHARE_OF_DAMPING if machine.deviates is None else SHARE
     multipliers = [real(f"multiplier_{k + 1}") for k in range(size)]
     steps = [real(f"step_{j.key}") for j in machine.mechanism.joints]
     length = real("step_length")
     return [
         Let(_NO_NEARER, sp.Gt(real("error"), BEFORE)),
-        Let(damping, larger((SHARE_OF_DAMPING if machine.deviates is None else SHARE) * real("error"), LEAST_DAMPING)),
-        *(Let(n, product[k] + (damping if k[0] == k[1] else 0)) for k, n in names.items()),
+        *(Let(square, product[k, k]) for k, square in enumerate(squares)),
+        Let(damping, larger(share * real("error"), 2 * PIVOT * sp.Add(*squares)), "no pivot is taken for zero"),
+        *(Let(n, squares[k[0]] + damping if k[0] == k[1] else product[k]) for k, n in names.items()),
         Solve(tuple(multipliers), matrix, tuple(real(f"error_{k + 1}") for k in range(size))),
         *(Let(n, v) for n, v in zip(steps, jacobian.T * sp.Matrix(multipliers), strict=True)),
         Let(length, Root(sp.Add(*[s**2 for s in steps]))),

@@ -9,15 +9,16 @@ import sympy as sp
 from derive.description.mechanism import Joint, Mechanism
 from derive.equations.axes import reference_value
 from derive.ir.constants import (
-    COST_OF_A_STALL,
     DOUBTFUL,
     FREE_ANGLE,
+    HARDLY_NEARER,
     LATTICE,
+    NEAR,
     NEARLY_FREE,
-    PASSES,
     REFINED,
     SCANNED,
-    STALLED,
+    STALLS,
+    STARTS,
 )
 from derive.ir.passes import needed_for
 from derive.ir.primitives import Select, ToReal
@@ -35,16 +36,22 @@ ANOTHER, MIRRORS, IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
 LEFT_NOW = count("passes_left_now")
 TURN, BESIDE = real("turn_of_attempt"), real("turn_beside")
 AGAIN = flag("from_the_met_pose")
-ENDS = flag("no_start_is_left")
+ENDS, SCANS = flag("no_start_is_left"), flag("scans")
 FREE, FREE_TURN = real("free_angle"), real("free_turn")
 LEFT_OVER = real("error_left")
 NEAREST, NEAREST_TURN = real("least_error_left"), real("nearest_turn")
 NEAREST_NOW, NEAREST_TURN_NOW = real("least_error_left_now"), real("nearest_turn_now")
 STEP = sp.Rational(360, SCANNED)
 """How far (degrees) free angles are turned from one attempt of the scan to the next."""
-SCAN_ENDS = SCANNED + REFINED + 2
+AROUND = sp.Float(360 / STARTS)
+"""The same from one of the starts all around the circle to the next: a number, which costs no division."""
+REFINING_BEGINS = SCANNED + 2
+SCAN_ENDS = REFINING_BEGINS + REFINED
+LAST = SCAN_ENDS + STARTS
 """The attempts: 0 from the given start, 1 with nearly free angles at the reference, then one of the scan each, some
-beside the nearest, ever closer, and this one from the nearest of all.
+beside the nearest, ever closer, and one from the nearest of all. The scan turns angles that hardly move the pose, which
+steps do not find. Then steps are taken with nearly free angles all around the circle: where an angle is free next to
+one value alone of another, one step does not tell how near a start is.
 """
 OFTEN_FREE = sp.Float("0.1")
 """The conditioning at which the closed form of a drawing tells little of an angle of a machine with deviations."""
@@ -64,24 +71,28 @@ def tried(joint: Joint) -> sp.Symbol:
 def next_attempt(following: sp.Symbol, deviates: bool) -> tuple[Let, ...]:
     """Whether another start is taken, which one, and what is free there."""
     nearer = flag("is_nearer")
-    far = Select(refines(following), BESIDE, _ZERO)
+    is_refined, is_around = sp.Ge(following, REFINING_BEGINS), sp.Gt(following, SCAN_ENDS)
+    is_scanned = sp.And(sp.Gt(following, 1), sp.Le(following, SCAN_ENDS))
     far_from_free, nearer_free = (OFTEN_FREE, OFTEN_FREE) if deviates else (DOUBTFUL, NEARLY_FREE)
-    free = Select(sp.Gt(following, 0), Select(sp.Gt(following, SCANNED + 1), nearer_free, far_from_free), FREE_ANGLE)
-    cost = Select(sp.Gt(real("error"), STALLED * BEFORE), sp.Integer(COST_OF_A_STALL), _ONE)
+    free = Select(sp.Gt(following, 0), Select(is_scanned, nearer_free, far_from_free), FREE_ANGLE)
+    stalls = sp.Or(MIRRORS, sp.Gt(real("error"), HARDLY_NEARER * BEFORE))
+    is_far = sp.And(sp.Eq(ATTEMPT, REFINING_BEGINS - 1), sp.Gt(NEAREST_NOW, NEAR))
+    around = AROUND * ToReal(following - SCAN_ENDS)
+    scanned = STEP * ToReal(following - 1)
+    refined = NEAREST_TURN_NOW + Select(refines(following), BESIDE, _ZERO)
     return (
         Let(ANOTHER, sp.Le(LEFT, 0)),
-        Let(LEFT_NOW, LEFT - cost),
-        Let(following, ATTEMPT + Select(ANOTHER, _ONE, _ZERO)),
-        Let(AGAIN, sp.And(MIRRORS, sp.Gt(LEFT, PASSES // 2)), "what is nearly free is known now"),
-        Let(FREE, Select(AGAIN, FREE_ANGLE if deviates else DOUBTFUL, free)),
-        *(_asked(following) if deviates else ()),
+        Let(LEFT_NOW, LEFT - Select(stalls, _ONE, _ZERO)),
         Let(nearer, sp.And(is_scan(ATTEMPT), sp.Lt(LEFT_OVER, NEAREST))),
         Let(NEAREST_NOW, Select(nearer, LEFT_OVER, NEAREST)),
         Let(NEAREST_TURN_NOW, Select(nearer, TURN, NEAREST_TURN)),
+        Let(following, Select(is_far, sp.Integer(SCAN_ENDS), ATTEMPT + Select(ANOTHER, _ONE, _ZERO))),
+        Let(SCANS, is_scan(following)),
+        Let(AGAIN, sp.And(MIRRORS, sp.Gt(LEFT, STALLS // 2)), "what is nearly free is known now"),
+        Let(FREE, Select(AGAIN, FREE_ANGLE if deviates else DOUBTFUL, free)),
+        *(_asked(following) if deviates else ()),
         Let(
-            FREE_TURN,
-            Select(sp.Gt(following, SCANNED + 1), NEAREST_TURN_NOW + far, STEP * ToReal(following - 1)),
-            "how far free angles are turned",
+            FREE_TURN, Select(is_around, around, Select(is_refined, refined, scanned)), "how far free angles are turned"
         ),
     )
 
@@ -120,7 +131,7 @@ def is_scan(attempt: sp.Symbol) -> sp.Basic:
 
 def refines(attempt: sp.Symbol) -> sp.Basic:
     """Whether an attempt is one beside the nearest of the scan."""
-    return sp.And(sp.Gt(attempt, SCANNED + 1), sp.Lt(attempt, SCAN_ENDS))
+    return sp.And(sp.Ge(attempt, REFINING_BEGINS), sp.Lt(attempt, SCAN_ENDS))
 
 
 def closed_form(mechanism: Mechanism, branch: Program, deviates: bool) -> tuple[list[Let], dict[Joint, sp.Expr]]:

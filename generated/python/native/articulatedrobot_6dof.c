@@ -228,7 +228,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a4 = start_a4;
   double tried_a5 = start_a5;
   double tried_a6 = start_a6;
-  int passes_left = 64;
+  int passes_left = 20;
   int attempt = 0;
   double error_before = 9.0;
   double least_error_left = 9.0;
@@ -242,28 +242,28 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       branch_elbow, r33_at_q4, r31_at_q5, r12_at_q4, r13_at_q5, q6, sin_q6, cos_q6, r13_at_q6, r22_at_q4,
       r23_at_q5, r23_at_q6, r32_at_q4, r33_at_q5, r33_at_q6, r12_at_q6, r22_at_q6, r32_at_q6, error_1,
       error_2, cos_q2, z_at_q3, z_at_q4, z_at_q5, z, error_3, error_4, error_5, error_6, value_in_error,
-      error, free_angle, product_in_damping, damping, rate_1_1, z_minus_d1,
-      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, z_minus_z_at_q4,
-      y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6, product_1_1, rate_2_1,
-      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4, x_minus_x_at_q5,
-      rate_2_5, rate_2_6, product_1_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6, product_1_3,
-      rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2, product_2_3,
-      rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3, rate_3_2_plus_rate_3_3,
-      product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6, product_5_5, product_5_6,
-      product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6,
-      step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6, step_length, error_left,
-      nearest_turn_now, free_turn, closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1,
-      closed_cos_q1, closed_sin_q1, closed_r13_from_q1, closed_reference_a2, closed_length_q2, closed_cos_q2,
-      closed_sin_q2, closed_sin_q23, closed_cos_q23, closed_r33_from_q123, closed_r23_from_q1,
-      closed_radius_q4, shrinking, closed_axis_a1, closed_axis_a2, closed_reference_a4,
-      closed_direction_x_q4, closed_direction_y_q4, closed_axis_a4, closed_r13_from_q123,
-      closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1, closed_r12_from_q1, closed_r32_from_q123,
-      closed_direction_x_q6, closed_r21_from_q1, closed_r11_from_q1, closed_r31_from_q123,
-      closed_direction_y_q6, closed_axis_a6, least_error_left_now, shared_quotient;
+      error, rate_1_1, z_minus_d1, cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3,
+      z_minus_z_at_q4, y_minus_y_at_q4, rate_1_4, z_minus_z_at_q5, y_minus_y_at_q5, rate_1_5, rate_1_6,
+      square_1, rate_2_1, sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, x_minus_x_at_q4, rate_2_4,
+      x_minus_x_at_q5, rate_2_5, rate_2_6, square_2, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6,
+      square_3, square_4, square_5, square_6, product_in_damping, product_in_damping_2, damping, product_1_1,
+      product_1_2, product_1_3, rate_1_2_plus_rate_1_3, product_1_4, product_1_5, product_1_6, product_2_2,
+      product_2_3, rate_2_2_plus_rate_2_3, product_2_4, product_2_5, product_2_6, product_3_3,
+      rate_3_2_plus_rate_3_3, product_3_4, product_3_5, product_3_6, product_4_4, product_4_5, product_4_6,
+      product_5_5, product_5_6, product_6_6, multiplier_1, multiplier_2, multiplier_3, multiplier_4,
+      multiplier_5, multiplier_6, step_a1, sum_in_step_a2, step_a2, step_a3, step_a4, step_a5, step_a6,
+      step_length, error_left, least_error_left_now, free_angle, nearest_turn_now, free_turn,
+      closed_reference_a1, free_angle_times_machine_scale, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
+      closed_r13_from_q1, closed_reference_a2, closed_length_q2, closed_cos_q2, closed_sin_q2,
+      closed_sin_q23, closed_cos_q23, closed_r33_from_q123, closed_r23_from_q1, closed_radius_q4, shrinking,
+      closed_axis_a1, closed_axis_a2, closed_reference_a4, closed_direction_x_q4, closed_direction_y_q4,
+      closed_axis_a4, closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1,
+      closed_r12_from_q1, closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1,
+      closed_r11_from_q1, closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, mirrors,
-      from_the_met_pose, is_nearer, no_start_is_left;
-  for (int pass = 0; pass < 308; pass += 1) {
+  bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer, scans, mirrors,
+      from_the_met_pose, no_start_is_left;
+  for (int pass = 0; pass < 450; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -351,12 +351,6 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     /* the error is rounding, and steps make it no smaller */
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
-    next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
-    from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
     rate_1_1 = -k->one_by_machine_scale*y;
     z_minus_d1 = z - k->d1;
     cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
@@ -370,7 +364,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     y_minus_y_at_q5 = y - y_at_q5;
     rate_1_5 = k->one_by_machine_scale*(r22_at_q4*z_minus_z_at_q5 - r32_at_q4*y_minus_y_at_q5);
     rate_1_6 = k->one_by_machine_scale*(r21_at_q5*z_minus_z_at_q5 - r31_at_q5*y_minus_y_at_q5);
-    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
+    square_1 = rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
         + rate_1_5*rate_1_5 + rate_1_6*rate_1_6;
     rate_2_1 = k->one_by_machine_scale*x;
     sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
@@ -381,13 +375,25 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     x_minus_x_at_q5 = x - x_at_q5;
     rate_2_5 = (r32_at_q4*x_minus_x_at_q5 - r12_at_q4*z_minus_z_at_q5)*k->one_by_machine_scale;
     rate_2_6 = (r31_at_q5*x_minus_x_at_q5 - r11_at_q5*z_minus_z_at_q5)*k->one_by_machine_scale;
-    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
-        + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
+    square_2 = rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
+        + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
     rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
     rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
     rate_3_4 = k->one_by_machine_scale*(r11_at_q23*y_minus_y_at_q4 - r21_at_q23*x_minus_x_at_q4);
     rate_3_5 = k->one_by_machine_scale*(r12_at_q4*y_minus_y_at_q5 - r22_at_q4*x_minus_x_at_q5);
     rate_3_6 = k->one_by_machine_scale*(r11_at_q5*y_minus_y_at_q5 - r21_at_q5*x_minus_x_at_q5);
+    square_3 = rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
+        + rate_3_6*rate_3_6;
+    square_4 = r11_at_q23*r11_at_q23 + r11_at_q5*r11_at_q5 + r12_at_q4*r12_at_q4 + 2.0*sin_q1*sin_q1;
+    square_5 = 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r21_at_q5*r21_at_q5 + r22_at_q4*r22_at_q4;
+    square_6 = 1.0 + r31_at_q5*r31_at_q5 + r32_at_q4*r32_at_q4 + sin_q23*sin_q23;
+    product_in_damping = 0.001*error;
+    product_in_damping_2 = 2e-14*(square_1 + square_2 + square_3 + square_4 + square_5 + square_6);
+    /* no pivot is taken for zero */
+    damping = product_in_damping > product_in_damping_2 ? product_in_damping : product_in_damping_2;
+    product_1_1 = damping + square_1;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+        + rate_1_5*rate_2_5 + rate_1_6*rate_2_6;
     product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5
         + rate_1_6*rate_3_6;
     rate_1_2_plus_rate_1_3 = rate_1_2 + rate_1_3;
@@ -396,8 +402,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     product_1_5 = r21_at_q23*rate_1_4 + r21_at_q5*rate_1_6 + r22_at_q4*rate_1_5
         - rate_1_2_plus_rate_1_3*cos_q1;
     product_1_6 = rate_1_1 + r31_at_q5*rate_1_6 + r32_at_q4*rate_1_5 + rate_1_4*sin_q23;
-    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
-        + rate_2_5*rate_2_5 + rate_2_6*rate_2_6;
+    product_2_2 = damping + square_2;
     product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5
         + rate_2_6*rate_3_6;
     rate_2_2_plus_rate_2_3 = rate_2_2 + rate_2_3;
@@ -406,22 +411,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     product_2_5 = r21_at_q23*rate_2_4 + r21_at_q5*rate_2_6 + r22_at_q4*rate_2_5
         - rate_2_2_plus_rate_2_3*cos_q1;
     product_2_6 = rate_2_1 + r31_at_q5*rate_2_6 + r32_at_q4*rate_2_5 + rate_2_4*sin_q23;
-    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5
-        + rate_3_6*rate_3_6;
+    product_3_3 = damping + square_3;
     rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3;
     product_3_4 = r11_at_q23*rate_3_4 + r11_at_q5*rate_3_6 + r12_at_q4*rate_3_5
         + rate_3_2_plus_rate_3_3*sin_q1;
     product_3_5 = r21_at_q23*rate_3_4 + r21_at_q5*rate_3_6 + r22_at_q4*rate_3_5
         - rate_3_2_plus_rate_3_3*cos_q1;
     product_3_6 = r31_at_q5*rate_3_6 + r32_at_q4*rate_3_5 + rate_3_4*sin_q23;
-    product_4_4 = damping + r11_at_q23*r11_at_q23 + r11_at_q5*r11_at_q5 + r12_at_q4*r12_at_q4
-        + 2.0*sin_q1*sin_q1;
+    product_4_4 = damping + square_4;
     product_4_5 = r11_at_q23*r21_at_q23 + r11_at_q5*r21_at_q5 + r12_at_q4*r22_at_q4 - 2.0*cos_q1*sin_q1;
     product_4_6 = r11_at_q23*sin_q23 + r11_at_q5*r31_at_q5 + r12_at_q4*r32_at_q4;
-    product_5_5 = damping + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r21_at_q5*r21_at_q5
-        + r22_at_q4*r22_at_q4;
+    product_5_5 = damping + square_5;
     product_5_6 = r21_at_q23*sin_q23 + r21_at_q5*r31_at_q5 + r22_at_q4*r32_at_q4;
-    product_6_6 = 1.0 + damping + r31_at_q5*r31_at_q5 + r32_at_q4*r32_at_q4 + sin_q23*sin_q23;
+    product_6_6 = damping + square_6;
     double system[6][7] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6,
         error_1}, {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6, error_2},
         {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6, error_3},
@@ -452,10 +454,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5 + multiplier_6*multiplier_6)*damping
         + step_length*step_length;
     is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
+    least_error_left_now = is_nearer ? error_left : least_error_left;
+    next_attempt = (least_error_left_now > 0.01) && (attempt == 62) ? 115 : attempt + (another ? 1 : 0);
+    scans = (next_attempt > 1) && (next_attempt < 115);
+    mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
+    from_the_met_pose = mirrors && (passes_left > 10); /* what is nearly free is known now */
+    free_angle = from_the_met_pose ? 0.01
+        : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 1) ? 1e-5 : 0.01) : 2e-12);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    free_turn = next_attempt > 115 ? -27.692307692307693*(115 - next_attempt)
+        : (next_attempt >= 63 ? nearest_turn_now
+        + ((next_attempt >= 63) && (next_attempt < 115) ? turn_beside : 0.0)
+        : -360.0*(1 - next_attempt)/61.0);
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -519,10 +530,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - closed_direction_y_q4*closed_r31_from_q123;
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
-    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    least_error_left_now = is_nearer ? error_left : least_error_left;
+    passes_left_now = passes_left + (mirrors || (error > 0.99*error_before) ? -1 : 0);
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
+    if (pose_is_met || (no_start_is_left && (!scans)) || (another && (next_attempt > 128))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -540,14 +550,14 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 116 : next_attempt);
-    error_before = (another || mirrors ? 9.0 : error);
+    passes_left = (another ? (scans ? 0 : 20) : passes_left_now);
+    attempt = (no_start_is_left ? (scans ? 115 : 129) : next_attempt);
+    error_before = (another || mirrors ? 9.0 : (error < error_before ? error : error_before));
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
-        : turn_beside);
+    turn_beside = ((next_attempt >= 63) && (next_attempt < 115)
+        ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0) : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);

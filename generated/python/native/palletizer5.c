@@ -225,7 +225,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a3 = start_a3;
   double tried_a4 = start_a4;
   double tried_a5 = start_a5;
-  int passes_left = 64;
+  int passes_left = 20;
   int attempt = 0;
   double error_before = 9.0;
   double least_error_left = 9.0;
@@ -237,23 +237,23 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       wrist_x, r21_at_a4, r23_at_a5, y_at_a2, r23_at_a2, y_at_a2_a3, r21_at_a3, y_at_a3, y_at_a4,
       r23_at_a5_times_tool_length, y, wrist_y, branch_shoulder, cos_a3_from_a2, cos_a5, error_1, error_2,
       cos_a2, z_at_a2_a3, sin_a3, z_at_a3, z_at_a5, z, error_3, r11_at_a5, r21_at_a5, sum_in_error_4,
-      sum_in_error_4_2, error_4, error_5, error, free_angle, free_angle_times_machine_scale, rate_1_1,
-      rate_2_1, z_minus_z_at_a2_a3, sum_in_rate_1_2, rate_1_2, sum_in_rate_1_3, rate_1_3, y_at_a4_minus_y,
-      rate_1_4, product_in_rate_1_5, rate_1_5, product_in_damping, damping, product_1_1, rate_2_2, rate_2_3,
-      x_minus_x_at_a4, rate_2_4, rate_2_5, product_1_2, x_minus_x_at_a2_a3, y_minus_y_at_a2_a3, rate_3_2,
-      rate_3_3, rate_3_5, product_1_3, rate_4_5, product_1_4, rate_5_5, product_1_5, product_2_2,
-      product_2_3, product_2_4, product_2_5, product_3_3, product_3_4, product_3_5, product_4_4, product_4_5,
-      product_5_5, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5,
-      multiplier_4_times_sin_a5, step_a1, step_a2, step_a3, step_a4, step_a5, step_length, shrinking,
-      error_left, nearest_turn_now, free_turn, closed_reference_a1, closed_length_a1, closed_cos_a1,
-      closed_sin_a1, closed_axis_a1, closed_reference_a2, closed_direction_x_a2, closed_direction_y_a2,
-      closed_angle_a2, closed_axis_a2, closed_axis_a3, closed_reference_a4, closed_arm_along_a4,
-      closed_arm_across_a4, closed_direction_x_a4, closed_direction_y_a4, closed_axis_a4,
-      least_error_left_now, shared_quotient;
+      sum_in_error_4_2, error_4, error_5, error, rate_1_1, z_minus_z_at_a2_a3, sum_in_rate_1_2, rate_1_2,
+      sum_in_rate_1_3, rate_1_3, y_at_a4_minus_y, rate_1_4, product_in_rate_1_5, rate_1_5, square_1,
+      rate_2_1, rate_2_2, rate_2_3, x_minus_x_at_a4, rate_2_4, rate_2_5, square_2, x_minus_x_at_a2_a3,
+      y_minus_y_at_a2_a3, rate_3_2, rate_3_3, rate_3_5, square_3, rate_4_5, square_4, rate_5_5, square_5,
+      product_in_damping, product_in_damping_2, damping, product_1_1, product_1_2, product_1_3, product_1_4,
+      product_1_5, product_2_2, product_2_3, product_2_4, product_2_5, product_3_3, product_3_4, product_3_5,
+      product_4_4, product_4_5, product_5_5, multiplier_1, multiplier_2, multiplier_3, multiplier_4,
+      multiplier_5, multiplier_4_times_sin_a5, step_a1, step_a2, step_a3, step_a4, step_a5, step_length,
+      error_left, least_error_left_now, free_angle, free_angle_times_machine_scale, shrinking,
+      nearest_turn_now, free_turn, closed_reference_a1, closed_length_a1, closed_cos_a1, closed_sin_a1,
+      closed_axis_a1, closed_reference_a2, closed_direction_x_a2, closed_direction_y_a2, closed_angle_a2,
+      closed_axis_a2, closed_axis_a3, closed_reference_a4, closed_arm_along_a4, closed_arm_across_a4,
+      closed_direction_x_a4, closed_direction_y_a4, closed_axis_a4, shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_tilt, beside_shoulder, beside_elbow, another, pose_is_close, pose_is_met, mirrors,
-      from_the_met_pose, no_start_is_left, is_nearer;
-  for (int pass = 0; pass < 308; pass += 1) {
+  bool beside_tilt, beside_shoulder, beside_elbow, another, pose_is_close, pose_is_met, is_nearer, scans,
+      mirrors, from_the_met_pose, no_start_is_left;
+  for (int pass = 0; pass < 450; pass += 1) {
     a5 = (tried_a5 - k->offset_a5)*SOFTKIN_DEGREE;
     sin_a5 = sin(a5);
     beside_tilt = closed_sign_tilt*sin_a5 < -2e-6;
@@ -318,15 +318,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     /* the error is rounding, and steps make it no smaller */
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_elbow) && (!beside_shoulder) && (!beside_tilt);
-    next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_tilt);
-    from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
-    free_angle_times_machine_scale = free_angle*k->machine_scale;
-    no_start_is_left = another && (closed_distance_a1 > free_angle_times_machine_scale)
-        && (closed_reach > free_angle) && (closed_reach_2 > free_angle_times_machine_scale);
     rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
     z_minus_z_at_a2_a3 = z - z_at_a2_a3;
     sum_in_rate_1_2 = k->base_height + z_minus_z_at_a2_a3 - z;
     rate_1_2 = -k->one_by_machine_scale*sum_in_rate_1_2*cos_a1;
@@ -336,17 +328,16 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     rate_1_4 = k->one_by_machine_scale*y_at_a4_minus_y;
     product_in_rate_1_5 = (z_at_a5 - z)*k->one_by_machine_scale;
     rate_1_5 = -product_in_rate_1_5*r11_at_a4;
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
-    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
+    square_1 = rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4
         + rate_1_5*rate_1_5;
+    rate_2_1 = k->one_by_machine_scale*x;
     rate_2_2 = -k->one_by_machine_scale*sum_in_rate_1_2*sin_a1;
     rate_2_3 = k->one_by_machine_scale*sum_in_rate_1_3*sin_a1;
     x_minus_x_at_a4 = x - x_at_a4;
     rate_2_4 = k->one_by_machine_scale*x_minus_x_at_a4;
     rate_2_5 = -product_in_rate_1_5*r21_at_a4;
-    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
-        + rate_1_5*rate_2_5;
+    square_2 = rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
+        + rate_2_5*rate_2_5;
     x_minus_x_at_a2_a3 = x - x_at_a2_a3;
     y_minus_y_at_a2_a3 = y - y_at_a2_a3;
     rate_3_2 = k->one_by_machine_scale
@@ -354,22 +345,31 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     rate_3_3 = -k->one_by_machine_scale
         *((x_at_a3 + x_minus_x_at_a2_a3 - x)*cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y)*sin_a1);
     rate_3_5 = (r21_at_a4*y_at_a4_minus_y - r11_at_a4*x_minus_x_at_a4)*k->one_by_machine_scale;
-    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_5*rate_3_5;
+    square_3 = rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_5*rate_3_5;
     rate_4_5 = r11_at_a4*r21_at_a5 - r11_at_a5*r21_at_a4;
-    product_1_4 = rate_1_5*rate_4_5 + (-rate_1_1 - rate_1_4)*sin_a5;
+    square_4 = rate_4_5*rate_4_5 + 2.0*sin_a5*sin_a5;
     rate_5_5 = r11_at_a4*r11_at_a4 + r21_at_a4*r21_at_a4;
+    square_5 = rate_5_5*rate_5_5;
+    product_in_damping = 0.001*error;
+    product_in_damping_2 = 2e-14*(square_1 + square_2 + square_3 + square_4 + square_5);
+    /* no pivot is taken for zero */
+    damping = product_in_damping > product_in_damping_2 ? product_in_damping : product_in_damping_2;
+    product_1_1 = damping + square_1;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4
+        + rate_1_5*rate_2_5;
+    product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_5*rate_3_5;
+    product_1_4 = rate_1_5*rate_4_5 + (-rate_1_1 - rate_1_4)*sin_a5;
     product_1_5 = rate_1_5*rate_5_5;
-    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4
-        + rate_2_5*rate_2_5;
+    product_2_2 = damping + square_2;
     product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_5*rate_3_5;
     product_2_4 = rate_2_5*rate_4_5 + (-rate_2_1 - rate_2_4)*sin_a5;
     product_2_5 = rate_2_5*rate_5_5;
-    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_5*rate_3_5;
+    product_3_3 = damping + square_3;
     product_3_4 = rate_3_5*rate_4_5;
     product_3_5 = rate_3_5*rate_5_5;
-    product_4_4 = damping + rate_4_5*rate_4_5 + 2.0*sin_a5*sin_a5;
+    product_4_4 = damping + square_4;
     product_4_5 = rate_4_5*rate_5_5;
-    product_5_5 = damping + rate_5_5*rate_5_5;
+    product_5_5 = damping + square_5;
     double system[5][6] = {{product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, error_1},
         {product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, error_2},
         {product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, error_3},
@@ -390,15 +390,27 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         + multiplier_5*rate_5_5;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3 + step_a4*step_a4
         + step_a5*step_a5);
-    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     /* error that a step leaves: what it does not reach, and its curvature */
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3
         + multiplier_4*multiplier_4 + multiplier_5*multiplier_5)*damping + step_length*step_length;
     is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
+    least_error_left_now = is_nearer ? error_left : least_error_left;
+    next_attempt = (least_error_left_now > 0.01) && (attempt == 62) ? 115 : attempt + (another ? 1 : 0);
+    scans = (next_attempt > 1) && (next_attempt < 115);
+    mirrors = pose_is_close && (beside_elbow || beside_shoulder || beside_tilt);
+    from_the_met_pose = mirrors && (passes_left > 10); /* what is nearly free is known now */
+    free_angle = from_the_met_pose ? 0.01
+        : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 1) ? 1e-5 : 0.01) : 2e-12);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    no_start_is_left = another && (closed_distance_a1 > free_angle_times_machine_scale)
+        && (closed_reach > free_angle) && (closed_reach_2 > free_angle_times_machine_scale);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    free_turn = next_attempt > 115 ? -27.692307692307693*(115 - next_attempt)
+        : (next_attempt >= 63 ? nearest_turn_now
+        + ((next_attempt >= 63) && (next_attempt < 115) ? turn_beside : 0.0)
+        : -360.0*(1 - next_attempt)/61.0);
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     closed_length_a1 = closed_distance_a1 > free_angle_times_machine_scale ? closed_distance_a1 : 1.0;
@@ -435,10 +447,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - closed_arm_across_a4*goal_r13 : sin(closed_reference_a4);
     closed_axis_a4 = softkin_on_turn(k->offset_a4
         + softkin_angle_of(closed_direction_y_a4, closed_direction_x_a4)*SOFTKIN_RADIAN, closed_near_a4);
-    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    least_error_left_now = is_nearer ? error_left : least_error_left;
+    passes_left_now = passes_left + (mirrors || (error > 0.99*error_before) ? -1 : 0);
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
+    if (pose_is_met || (no_start_is_left && (!scans)) || (another && (next_attempt > 128))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -453,14 +464,14 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a5 = (another || from_the_met_pose ? closed_axis_a5
         : (mirrors ? (beside_tilt ? 2.0*closed_axis_a5 - tried_a5 : tried_a5) : tried_a5
         + shared_quotient*step_a5));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 116 : next_attempt);
-    error_before = (another || mirrors ? 9.0 : error);
+    passes_left = (another ? (scans ? 0 : 20) : passes_left_now);
+    attempt = (no_start_is_left ? (scans ? 115 : 129) : next_attempt);
+    error_before = (another || mirrors ? 9.0 : (error < error_before ? error : error_before));
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
-        : turn_beside);
+    turn_beside = ((next_attempt >= 63) && (next_attempt < 115)
+        ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0) : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);

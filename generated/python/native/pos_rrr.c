@@ -160,7 +160,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a1 = start_a1;
   double tried_a2 = start_a2;
   double tried_a3 = start_a3;
-  int passes_left = 64;
+  int passes_left = 20;
   int attempt = 0;
   double error_before = 9.0;
   double least_error_left = 9.0;
@@ -169,18 +169,19 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double turn_beside = 5.901639344262295;
   double q1, sin_q1, cos_q1, x_at_q2, q2, sin_q2, r13_at_q2, x_at_q3, q3, q2_plus_q3, cos_q23, r11_at_q23,
       sin_q23, r13_at_q23, x, y_at_q2, r23_at_q2, y_at_q3, r21_at_q23, r23_at_q23, y, branch_arm, sin_q3,
-      cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, free_angle,
-      free_angle_times_machine_scale, rate_1_1, rate_2_1, z_minus_d1, cos_q1_times_one_by_machine_scale,
-      rate_1_2, z_minus_z_at_q3, rate_1_3, product_in_damping, damping, product_1_1,
-      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, product_1_2, rate_3_2, rate_3_3, product_1_3,
-      product_2_2, product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2,
-      step_a3, step_length, shrinking, error_left, nearest_turn_now, free_turn, closed_reference_a1,
-      closed_divisor_q1, closed_cos_q1, closed_sin_q1, closed_axis_a1, closed_reference_a2,
-      closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2, least_error_left_now, shared_quotient;
+      cos_q3, branch_elbow, error_1, error_2, cos_q2, z_at_q3, z, error_3, error, rate_1_1, z_minus_d1,
+      cos_q1_times_one_by_machine_scale, rate_1_2, z_minus_z_at_q3, rate_1_3, square_1, rate_2_1,
+      sin_q1_times_one_by_machine_scale, rate_2_2, rate_2_3, square_2, rate_3_2, rate_3_3, square_3,
+      product_in_damping, product_in_damping_2, damping, product_1_1, product_1_2, product_1_3, product_2_2,
+      product_2_3, product_3_3, multiplier_1, multiplier_2, multiplier_3, step_a1, step_a2, step_a3,
+      step_length, error_left, least_error_left_now, free_angle, free_angle_times_machine_scale, shrinking,
+      nearest_turn_now, free_turn, closed_reference_a1, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
+      closed_axis_a1, closed_reference_a2, closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2,
+      shared_quotient;
   int next_attempt, passes_left_now;
-  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, mirrors, from_the_met_pose,
-      no_start_is_left, is_nearer;
-  for (int pass = 0; pass < 308; pass += 1) {
+  bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, is_nearer, scans, mirrors,
+      from_the_met_pose, no_start_is_left;
+  for (int pass = 0; pass < 450; pass += 1) {
     q1 = (tried_a1 - k->offset_a1)*SOFTKIN_DEGREE;
     sin_q1 = sin(q1);
     cos_q1 = cos(q1);
@@ -220,33 +221,31 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     /* the error is rounding, and steps make it no smaller */
     pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
-    next_attempt = attempt + (another ? 1 : 0);
-    mirrors = pose_is_close && (beside_arm || beside_elbow);
-    from_the_met_pose = mirrors && (passes_left > 32); /* what is nearly free is known now */
-    free_angle = from_the_met_pose ? 0.01 : (next_attempt > 0 ? (next_attempt > 62 ? 1e-5 : 0.01) : 2e-12);
-    free_angle_times_machine_scale = free_angle*k->machine_scale;
-    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
-        && (closed_reach > free_angle_times_machine_scale);
     rate_1_1 = -k->one_by_machine_scale*y;
-    rate_2_1 = k->one_by_machine_scale*x;
     z_minus_d1 = z - k->d1;
     cos_q1_times_one_by_machine_scale = k->one_by_machine_scale*cos_q1;
     rate_1_2 = -z_minus_d1*cos_q1_times_one_by_machine_scale;
     z_minus_z_at_q3 = z - z_at_q3;
     rate_1_3 = -z_minus_z_at_q3*cos_q1_times_one_by_machine_scale;
-    product_in_damping = 0.001*error;
-    damping = product_in_damping > 1e-13 ? product_in_damping : 1e-13;
-    product_1_1 = damping + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
+    square_1 = rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3;
+    rate_2_1 = k->one_by_machine_scale*x;
     sin_q1_times_one_by_machine_scale = k->one_by_machine_scale*sin_q1;
     rate_2_2 = -z_minus_d1*sin_q1_times_one_by_machine_scale;
     rate_2_3 = -z_minus_z_at_q3*sin_q1_times_one_by_machine_scale;
-    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
+    square_2 = rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
     rate_3_2 = -k->one_by_machine_scale*((x_at_q2 - x)*cos_q1 + (y_at_q2 - y)*sin_q1);
     rate_3_3 = -k->one_by_machine_scale*((x_at_q3 - x)*cos_q1 + (y_at_q3 - y)*sin_q1);
+    square_3 = rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
+    product_in_damping = 0.001*error;
+    product_in_damping_2 = 2e-14*(square_1 + square_2 + square_3);
+    /* no pivot is taken for zero */
+    damping = product_in_damping > product_in_damping_2 ? product_in_damping : product_in_damping_2;
+    product_1_1 = damping + square_1;
+    product_1_2 = rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3;
     product_1_3 = rate_1_2*rate_3_2 + rate_1_3*rate_3_3;
-    product_2_2 = damping + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3;
+    product_2_2 = damping + square_2;
     product_2_3 = rate_2_2*rate_3_2 + rate_2_3*rate_3_3;
-    product_3_3 = damping + rate_3_2*rate_3_2 + rate_3_3*rate_3_3;
+    product_3_3 = damping + square_3;
     double system[3][4] = {{product_1_1, product_1_2, product_1_3, error_1},
         {product_1_2, product_2_2, product_2_3, error_2}, {product_1_3, product_2_3, product_3_3, error_3}};
     softkin_solve(&system[0][0], 3, 1);
@@ -257,15 +256,27 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     step_a2 = multiplier_1*rate_1_2 + multiplier_2*rate_2_2 + multiplier_3*rate_3_2;
     step_a3 = multiplier_1*rate_1_3 + multiplier_2*rate_2_3 + multiplier_3*rate_3_3;
     step_length = sqrt(step_a1*step_a1 + step_a2*step_a2 + step_a3*step_a3);
-    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     /* error that a step leaves: what it does not reach, and its curvature */
     error_left = sqrt(multiplier_1*multiplier_1 + multiplier_2*multiplier_2 + multiplier_3*multiplier_3)
         *damping + step_length*step_length;
     is_nearer = (attempt > 1) && (attempt < 115) && (error_left < least_error_left);
+    least_error_left_now = is_nearer ? error_left : least_error_left;
+    next_attempt = (least_error_left_now > 0.01) && (attempt == 62) ? 115 : attempt + (another ? 1 : 0);
+    scans = (next_attempt > 1) && (next_attempt < 115);
+    mirrors = pose_is_close && (beside_arm || beside_elbow);
+    from_the_met_pose = mirrors && (passes_left > 10); /* what is nearly free is known now */
+    free_angle = from_the_met_pose ? 0.01
+        : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 1) ? 1e-5 : 0.01) : 2e-12);
+    free_angle_times_machine_scale = free_angle*k->machine_scale;
+    no_start_is_left = another && (closed_distance_q1 > free_angle_times_machine_scale)
+        && (closed_reach > free_angle_times_machine_scale);
+    shrinking = step_length > 0.5 ? 0.5/(step_length > 0.5 ? step_length : 1.0) : 1.0;
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
     /* how far free angles are turned */
-    free_turn = next_attempt > 62 ? nearest_turn_now
-        + ((next_attempt > 62) && (next_attempt < 115) ? turn_beside : 0.0) : -360.0*(1 - next_attempt)/61.0;
+    free_turn = next_attempt > 115 ? -27.692307692307693*(115 - next_attempt)
+        : (next_attempt >= 63 ? nearest_turn_now
+        + ((next_attempt >= 63) && (next_attempt < 115) ? turn_beside : 0.0)
+        : -360.0*(1 - next_attempt)/61.0);
     closed_reference_a1 = ((from_the_met_pose ? tried_a1 : free_turn + given_ref_a1) - k->offset_a1)
         *SOFTKIN_DEGREE;
     closed_divisor_q1 = closed_distance_q1 > free_angle_times_machine_scale
@@ -288,10 +299,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
-    passes_left_now = passes_left + (error > 0.999*error_before ? -8 : -1);
-    least_error_left_now = is_nearer ? error_left : least_error_left;
+    passes_left_now = passes_left + (mirrors || (error > 0.99*error_before) ? -1 : 0);
     shared_quotient = shrinking*SOFTKIN_RADIAN;
-    if (no_start_is_left || pose_is_met || (another && (next_attempt > 115))) {
+    if (pose_is_met || (no_start_is_left && (!scans)) || (another && (next_attempt > 128))) {
       break;
     }
     tried_a1 = (another || from_the_met_pose ? closed_axis_a1
@@ -302,14 +312,14 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? ((next_attempt > 1) && (next_attempt < 115) ? 0 : 64) : passes_left_now);
-    attempt = (no_start_is_left ? 116 : next_attempt);
-    error_before = (another || mirrors ? 9.0 : error);
+    passes_left = (another ? (scans ? 0 : 20) : passes_left_now);
+    attempt = (no_start_is_left ? (scans ? 115 : 129) : next_attempt);
+    error_before = (another || mirrors ? 9.0 : (error < error_before ? error : error_before));
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;
-    turn_beside = ((next_attempt > 62) && (next_attempt < 115) ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0)
-        : turn_beside);
+    turn_beside = ((next_attempt >= 63) && (next_attempt < 115)
+        ? -turn_beside/(turn_beside > 0.0 ? 1.0 : 2.0) : turn_beside);
   }
   const double chosen_a1 = softkin_on_turn(tried_a1, closed_near_a1);
   const double chosen_a2 = softkin_on_turn(tried_a2, closed_near_a2);

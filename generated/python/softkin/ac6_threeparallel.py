@@ -35,9 +35,9 @@ counted together):
     inverse: 89 additions, 76 multiplications, 11 divisions, 5 square roots, 6 sines
     inverse, all 8 branches: 582 additions, 366 multiplications, 50 divisions, 17 square roots, 30 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 108146 additions, 136778 multiplications, 5852 divisions, 1850
-    square roots, 7706 sines
-    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
+    a branch at a singular pose, in addition: 160688 additions, 200726 multiplications, 8550 divisions, 2702
+    square roots, 11256 sines
+    steps of damped least squares on the closure, from one start after the other: at most 450 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -111,7 +111,7 @@ class Ac6ThreeParallel(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Ac6_ThreeParallel"
-    KEY = "ac6_threeparallel 8a07a3647a013fa0"
+    KEY = "ac6_threeparallel 0698ae1bbd3a833d"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -381,8 +381,8 @@ class Ac6ThreeParallel(Mechanism):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -501,14 +501,6 @@ class Ac6ThreeParallel(Mechanism):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_wrist)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_d1 = z - d1
             cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
@@ -522,9 +514,8 @@ class Ac6ThreeParallel(Mechanism):
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = (r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6) * one_by_machine_scale
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
@@ -540,6 +531,33 @@ class Ac6ThreeParallel(Mechanism):
             rate_2_5 = (r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234) * one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = one_by_machine_scale * (r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6)
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            rate_3_2 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = -one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
+            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * one_by_machine_scale
+            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * one_by_machine_scale
+            square_3 = (
+                rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            square_4 = r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            square_5 = 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            square_6 = 1.0 + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            product_in_damping = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5 + square_6)
+            product_in_damping_2 = 0.001 * error
+            damping = max(product_in_damping, product_in_damping_2)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
             product_1_2 = (
                 rate_1_1 * rate_2_1
                 + rate_1_2 * rate_2_2
@@ -548,11 +566,6 @@ class Ac6ThreeParallel(Mechanism):
                 + rate_1_5 * rate_2_5
                 + rate_1_6 * rate_2_6
             )
-            rate_3_2 = one_by_machine_scale * (x * cos_q1 + y * sin_q1)
-            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = -one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
-            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * one_by_machine_scale
-            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * one_by_machine_scale
             product_1_3 = (
                 rate_1_2 * rate_3_2
                 + rate_1_3 * rate_3_3
@@ -564,15 +577,7 @@ class Ac6ThreeParallel(Mechanism):
             product_1_4 = rate_1_2_plus_rate_1_3_plus_rate_1_4 * sin_q1 - r12_at_q5 * rate_1_6 - r13_at_q234 * rate_1_5
             product_1_5 = -rate_1_2_plus_rate_1_3_plus_rate_1_4 * cos_q1 - r22_at_q5 * rate_1_6 - r23_at_q234 * rate_1_5
             product_1_6 = rate_1_1 - rate_1_5 * cos_q234 - r32_at_q5 * rate_1_6
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
+            product_2_2 = damping + square_2
             product_2_3 = (
                 rate_2_2 * rate_3_2
                 + rate_2_3 * rate_3_3
@@ -584,24 +589,17 @@ class Ac6ThreeParallel(Mechanism):
             product_2_4 = rate_2_2_plus_rate_2_3_plus_rate_2_4 * sin_q1 - r12_at_q5 * rate_2_6 - r13_at_q234 * rate_2_5
             product_2_5 = -rate_2_2_plus_rate_2_3_plus_rate_2_4 * cos_q1 - r22_at_q5 * rate_2_6 - r23_at_q234 * rate_2_5
             product_2_6 = rate_2_1 - rate_2_5 * cos_q234 - r32_at_q5 * rate_2_6
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
+            product_3_3 = damping + square_3
             rate_3_2_plus_rate_3_3_plus_rate_3_4 = rate_3_2 + rate_3_3 + rate_3_4
             product_3_4 = rate_3_2_plus_rate_3_3_plus_rate_3_4 * sin_q1 - r12_at_q5 * rate_3_6 - r13_at_q234 * rate_3_5
             product_3_5 = -rate_3_2_plus_rate_3_3_plus_rate_3_4 * cos_q1 - r22_at_q5 * rate_3_6 - r23_at_q234 * rate_3_5
             product_3_6 = -rate_3_5 * cos_q234 - r32_at_q5 * rate_3_6
-            product_4_4 = damping + r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            product_4_4 = damping + square_4
             product_4_5 = r12_at_q5 * r22_at_q5 + r13_at_q234 * r23_at_q234 - 3.0 * cos_q1 * sin_q1
             product_4_6 = r13_at_q234 * cos_q234 + r12_at_q5 * r32_at_q5
-            product_5_5 = damping + 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            product_5_5 = damping + square_5
             product_5_6 = r23_at_q234 * cos_q234 + r22_at_q5 * r32_at_q5
-            product_6_6 = 1.0 + damping + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            product_6_6 = damping + square_6
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
@@ -656,12 +654,26 @@ class Ac6ThreeParallel(Mechanism):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_wrist)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * machine_scale
@@ -775,10 +787,9 @@ class Ac6ThreeParallel(Mechanism):
             closed_axis_a6 = nearest_period(
                 offset_a6 + arctan2(closed_sin_q6 + 0.0, closed_cos_q6 + 0.0) * RADIAN, closed_near_a6
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -822,15 +833,15 @@ class Ac6ThreeParallel(Mechanism):
                     else tried_a6 + shared_quotient * step_a6
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -35,9 +35,9 @@ counted together):
     inverse: 93 additions, 93 multiplications, 13 divisions, 6 square roots, 6 sines
     inverse, all 8 branches: 537 additions, 390 multiplications, 56 divisions, 17 square roots, 34 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 111247 additions, 146040 multiplications, 5547 divisions, 1544
-    square roots, 7707 sines
-    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
+    a branch at a singular pose, in addition: 165209 additions, 214248 multiplications, 8103 divisions, 2254
+    square roots, 11257 sines
+    steps of damped least squares on the closure, from one start after the other: at most 450 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -112,7 +112,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 5158e70dc4880123"
+    KEY = "articulatedrobot_6dof 7c783df17ca1843e"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -420,8 +420,8 @@ class ArticulatedRobot6DOF(Mechanism):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -545,14 +545,6 @@ class ArticulatedRobot6DOF(Mechanism):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow) and (not beside_hand)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_d1 = z - d1
             cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
@@ -566,9 +558,8 @@ class ArticulatedRobot6DOF(Mechanism):
             y_minus_y_at_q5 = y - y_at_q5
             rate_1_5 = one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
             rate_1_6 = one_by_machine_scale * (r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
@@ -584,6 +575,33 @@ class ArticulatedRobot6DOF(Mechanism):
             x_minus_x_at_q5 = x - x_at_q5
             rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * one_by_machine_scale
             rate_2_6 = (r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5) * one_by_machine_scale
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+            rate_3_6 = one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
+            square_3 = (
+                rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            square_4 = r11_at_q23 * r11_at_q23 + r11_at_q5 * r11_at_q5 + r12_at_q4 * r12_at_q4 + 2.0 * sin_q1 * sin_q1
+            square_5 = 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r21_at_q5 * r21_at_q5 + r22_at_q4 * r22_at_q4
+            square_6 = 1.0 + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5 + square_6)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
             product_1_2 = (
                 rate_1_1 * rate_2_1
                 + rate_1_2 * rate_2_2
@@ -592,11 +610,6 @@ class ArticulatedRobot6DOF(Mechanism):
                 + rate_1_5 * rate_2_5
                 + rate_1_6 * rate_2_6
             )
-            rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-            rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-            rate_3_6 = one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
             product_1_3 = (
                 rate_1_2 * rate_3_2
                 + rate_1_3 * rate_3_3
@@ -612,15 +625,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 r21_at_q23 * rate_1_4 + r21_at_q5 * rate_1_6 + r22_at_q4 * rate_1_5 - rate_1_2_plus_rate_1_3 * cos_q1
             )
             product_1_6 = rate_1_1 + r31_at_q5 * rate_1_6 + r32_at_q4 * rate_1_5 + rate_1_4 * sin_q23
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
+            product_2_2 = damping + square_2
             product_2_3 = (
                 rate_2_2 * rate_3_2
                 + rate_2_3 * rate_3_3
@@ -636,14 +641,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 r21_at_q23 * rate_2_4 + r21_at_q5 * rate_2_6 + r22_at_q4 * rate_2_5 - rate_2_2_plus_rate_2_3 * cos_q1
             )
             product_2_6 = rate_2_1 + r31_at_q5 * rate_2_6 + r32_at_q4 * rate_2_5 + rate_2_4 * sin_q23
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
+            product_3_3 = damping + square_3
             rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
             product_3_4 = (
                 r11_at_q23 * rate_3_4 + r11_at_q5 * rate_3_6 + r12_at_q4 * rate_3_5 + rate_3_2_plus_rate_3_3 * sin_q1
@@ -652,26 +650,14 @@ class ArticulatedRobot6DOF(Mechanism):
                 r21_at_q23 * rate_3_4 + r21_at_q5 * rate_3_6 + r22_at_q4 * rate_3_5 - rate_3_2_plus_rate_3_3 * cos_q1
             )
             product_3_6 = r31_at_q5 * rate_3_6 + r32_at_q4 * rate_3_5 + rate_3_4 * sin_q23
-            product_4_4 = (
-                damping
-                + r11_at_q23 * r11_at_q23
-                + r11_at_q5 * r11_at_q5
-                + r12_at_q4 * r12_at_q4
-                + 2.0 * sin_q1 * sin_q1
-            )
+            product_4_4 = damping + square_4
             product_4_5 = (
                 r11_at_q23 * r21_at_q23 + r11_at_q5 * r21_at_q5 + r12_at_q4 * r22_at_q4 - 2.0 * cos_q1 * sin_q1
             )
             product_4_6 = r11_at_q23 * sin_q23 + r11_at_q5 * r31_at_q5 + r12_at_q4 * r32_at_q4
-            product_5_5 = (
-                damping
-                + 2.0 * cos_q1 * cos_q1
-                + r21_at_q23 * r21_at_q23
-                + r21_at_q5 * r21_at_q5
-                + r22_at_q4 * r22_at_q4
-            )
+            product_5_5 = damping + square_5
             product_5_6 = r21_at_q23 * sin_q23 + r21_at_q5 * r31_at_q5 + r22_at_q4 * r32_at_q4
-            product_6_6 = 1.0 + damping + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            product_6_6 = damping + square_6
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
@@ -733,12 +719,26 @@ class ArticulatedRobot6DOF(Mechanism):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * machine_scale
@@ -832,10 +832,9 @@ class ArticulatedRobot6DOF(Mechanism):
             closed_axis_a6 = nearest_period(
                 offset_a6 + arctan2(closed_direction_y_q6 + 0.0, closed_direction_x_q6 + 0.0) * RADIAN, closed_near_a6
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -879,15 +878,15 @@ class ArticulatedRobot6DOF(Mechanism):
                 if another or from_the_met_pose
                 else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

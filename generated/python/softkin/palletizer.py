@@ -330,8 +330,8 @@ class Palletizer(OffsetKinematics, TwistChoice):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, start_a4, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             a1 = (tried_a1 - offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -377,25 +377,17 @@ class Palletizer(OffsetKinematics, TwistChoice):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
             sum_in_rate_1_2 = base_height + z_minus_z_at_a2_a3 - z
             rate_1_2 = -one_by_machine_scale * sum_in_rate_1_2 * cos_a1
             sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
             rate_1_3 = one_by_machine_scale * sum_in_rate_1_3 * cos_a1
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
             rate_2_1 = one_by_machine_scale * x
             rate_2_2 = -one_by_machine_scale * sum_in_rate_1_2 * sin_a1
             rate_2_3 = one_by_machine_scale * sum_in_rate_1_3 * sin_a1
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             x_minus_x_at_a2_a3 = x - x_at_a2_a3
             y_minus_y_at_a2_a3 = y - y_at_a2_a3
             rate_3_2 = one_by_machine_scale * (
@@ -404,10 +396,16 @@ class Palletizer(OffsetKinematics, TwistChoice):
             rate_3_3 = -one_by_machine_scale * (
                 (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
             )
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -426,12 +424,26 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a4 = (
                 (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
@@ -530,10 +542,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_axis_a3 = nearest_period(
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -555,15 +566,15 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -34,9 +34,9 @@ counted together):
     inverse: 74 additions, 62 multiplications, 9 divisions, 5 square roots, 5 sines
     inverse, all 8 branches: 351 additions, 203 multiplications, 25 divisions, 10 square roots, 16 sines
     repair of a frame, in addition: 46 additions, 60 multiplications, 9 divisions, 2 square roots, 0 sines
-    a branch at a singular pose, in addition: 63502 additions, 81974 multiplications, 4007 divisions, 929
-    square roots, 6168 sines
-    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
+    a branch at a singular pose, in addition: 95004 additions, 120646 multiplications, 5853 divisions, 1355
+    square roots, 9008 sines
+    steps of damped least squares on the closure, from one start after the other: at most 450 passes, all of
     which are counted
 
 A3 is the angle of the forearm against the base: where A2 alone moves, the forearm keeps its direction.
@@ -122,7 +122,7 @@ class Palletizer5(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer5"
-    KEY = "palletizer5 78ef6ecf6ae1227c"
+    KEY = "palletizer5 f8a6ab6d62e5574b"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -431,8 +431,8 @@ class Palletizer5(Mechanism):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, start_a4, start_a5, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, start_a4, start_a5, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             a5 = (tried_a5 - offset_a5) * DEGREE
             sin_a5 = sin(a5)
             beside_tilt = given_sigma_tilt * sin_a5 < -2e-6
@@ -500,21 +500,7 @@ class Palletizer5(Mechanism):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_tilt)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_tilt)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * machine_scale
-            no_start_is_left = (
-                another
-                and (closed_distance_a1 > free_angle_times_machine_scale)
-                and (closed_reach > free_angle)
-                and (closed_reach_2 > free_angle_times_machine_scale)
-            )
             rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
             sum_in_rate_1_2 = base_height + z_minus_z_at_a2_a3 - z
             rate_1_2 = -one_by_machine_scale * sum_in_rate_1_2 * cos_a1
@@ -524,27 +510,25 @@ class Palletizer5(Mechanism):
             rate_1_4 = one_by_machine_scale * y_at_a4_minus_y
             product_in_rate_1_5 = (z_at_a5 - z) * one_by_machine_scale
             rate_1_5 = -product_in_rate_1_5 * r11_at_a4
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
                 + rate_1_5 * rate_1_5
             )
+            rate_2_1 = one_by_machine_scale * x
             rate_2_2 = -one_by_machine_scale * sum_in_rate_1_2 * sin_a1
             rate_2_3 = one_by_machine_scale * sum_in_rate_1_3 * sin_a1
             x_minus_x_at_a4 = x - x_at_a4
             rate_2_4 = one_by_machine_scale * x_minus_x_at_a4
             rate_2_5 = -product_in_rate_1_5 * r21_at_a4
-            product_1_2 = (
-                rate_1_1 * rate_2_1
-                + rate_1_2 * rate_2_2
-                + rate_1_3 * rate_2_3
-                + rate_1_4 * rate_2_4
-                + rate_1_5 * rate_2_5
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
             )
             x_minus_x_at_a2_a3 = x - x_at_a2_a3
             y_minus_y_at_a2_a3 = y - y_at_a2_a3
@@ -555,28 +539,35 @@ class Palletizer5(Mechanism):
                 (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
             )
             rate_3_5 = (r21_at_a4 * y_at_a4_minus_y - r11_at_a4 * x_minus_x_at_a4) * one_by_machine_scale
-            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_5 * rate_3_5
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3 + rate_3_5 * rate_3_5
             rate_4_5 = r11_at_a4 * r21_at_a5 - r11_at_a5 * r21_at_a4
-            product_1_4 = rate_1_5 * rate_4_5 + (-rate_1_1 - rate_1_4) * sin_a5
+            square_4 = rate_4_5 * rate_4_5 + 2.0 * sin_a5 * sin_a5
             rate_5_5 = r11_at_a4 * r11_at_a4 + r21_at_a4 * r21_at_a4
-            product_1_5 = rate_1_5 * rate_5_5
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
+            square_5 = rate_5_5 * rate_5_5
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
             )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_5 * rate_3_5
+            product_1_4 = rate_1_5 * rate_4_5 + (-rate_1_1 - rate_1_4) * sin_a5
+            product_1_5 = rate_1_5 * rate_5_5
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_5 * rate_3_5
             product_2_4 = rate_2_5 * rate_4_5 + (-rate_2_1 - rate_2_4) * sin_a5
             product_2_5 = rate_2_5 * rate_5_5
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3 + rate_3_5 * rate_3_5
+            product_3_3 = damping + square_3
             product_3_4 = rate_3_5 * rate_4_5
             product_3_5 = rate_3_5 * rate_5_5
-            product_4_4 = damping + rate_4_5 * rate_4_5 + 2.0 * sin_a5 * sin_a5
+            product_4_4 = damping + square_4
             product_4_5 = rate_4_5 * rate_5_5
-            product_5_5 = damping + rate_5_5 * rate_5_5
+            product_5_5 = damping + square_5
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5),
@@ -602,7 +593,6 @@ class Palletizer5(Mechanism):
             step_length = sqrt(
                 step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3 + step_a4 * step_a4 + step_a5 * step_a5
             )
-            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(
@@ -616,12 +606,34 @@ class Palletizer5(Mechanism):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_tilt)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
+            free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_a1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle)
+                and (closed_reach_2 > free_angle_times_machine_scale)
+            )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_length_a1 = closed_distance_a1 if closed_distance_a1 > free_angle_times_machine_scale else 1.0
@@ -681,10 +693,9 @@ class Palletizer5(Mechanism):
             closed_axis_a4 = nearest_period(
                 offset_a4 + arctan2(closed_direction_y_a4 + 0.0, closed_direction_x_a4 + 0.0) * RADIAN, closed_near_a4
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -719,15 +730,15 @@ class Palletizer5(Mechanism):
                     else tried_a5 + shared_quotient * step_a5
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -26,9 +26,9 @@ counted together):
     forward: 26 additions, 31 multiplications, 0 divisions, 0 square roots, 8 sines
     inverse: 54 additions, 45 multiplications, 8 divisions, 4 square roots, 3 sines
     inverse, all 4 branches: 191 additions, 140 multiplications, 24 divisions, 9 square roots, 10 sines
-    a branch at a singular pose, in addition: 28375 additions, 40998 multiplications, 3083 divisions, 928
-    square roots, 4317 sines
-    steps of damped least squares on the closure, from one start after the other: at most 308 passes, all of
+    a branch at a singular pose, in addition: 42789 additions, 60784 multiplications, 4503 divisions, 1354
+    square roots, 6305 sines
+    steps of damped least squares on the closure, from one start after the other: at most 450 passes, all of
     which are counted
 
 Verified at 144 poses, before this file was written, by a witness that knows the description alone:
@@ -101,7 +101,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 3a83fecab7ffdb11"
+    KEY = "pos_rrr 2e5ceaad35ab341d"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -312,8 +312,8 @@ class PosRRR(OffsetKinematics):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -353,38 +353,30 @@ class PosRRR(OffsetKinematics):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * machine_scale
-            no_start_is_left = (
-                another
-                and (closed_distance_q1 > free_angle_times_machine_scale)
-                and (closed_reach > free_angle_times_machine_scale)
-            )
             rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
             cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
             rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -397,19 +389,39 @@ class PosRRR(OffsetKinematics):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
+            free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_q1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -448,10 +460,9 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -476,15 +487,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1
@@ -606,8 +617,8 @@ class PosRRR(OffsetKinematics):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_a2, start_a3, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             q1 = (tried_a1 - offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -650,38 +661,30 @@ class PosRRR(OffsetKinematics):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * machine_scale
-            no_start_is_left = (
-                another
-                and (closed_distance_q1 > free_angle_times_machine_scale)
-                and (closed_reach > free_angle_times_machine_scale)
-            )
             rate_1_1 = -one_by_machine_scale * y
-            rate_2_1 = one_by_machine_scale * x
             z_minus_d1 = z - d1
             cos_q1_times_one_by_machine_scale = one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
             rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             rate_3_2 = -one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = -one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -694,19 +697,39 @@ class PosRRR(OffsetKinematics):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_arm or beside_elbow)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
+            free_angle_times_machine_scale = free_angle * machine_scale
+            no_start_is_left = (
+                another
+                and (closed_distance_q1 > free_angle_times_machine_scale)
+                and (closed_reach > free_angle_times_machine_scale)
+            )
+            shrinking = 0.5 / (step_length if step_length > 0.5 else 1.0) if step_length > 0.5 else 1.0
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a1 = ((tried_a1 if from_the_met_pose else free_turn + given_ref_a1) - offset_a1) * DEGREE
             closed_divisor_q1 = (
@@ -745,10 +768,9 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -773,15 +795,15 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -428,8 +428,8 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = start_a1, start_s2, start_m3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
-        for _ in range(308):
+        ) = start_a1, start_s2, start_m3, start_a4, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+        for _ in range(450):
             motor_s2 = tried_s2 - offset_s2
             level_of_b = motor_s2 * motor_s2 - sum_in_level_of_b
             motor_m3 = (tried_m3 - offset_m3) * DEGREE
@@ -516,14 +516,6 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
                 and (2.0 * motor_s2 >= -machine_scale_times_rounding)
                 and (-sum_in_pose_is_met >= -product_in_pose_is_met_2)
             )
-            next_attempt = attempt + (1 if another else 0)
-            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            from_the_met_pose = mirrors and (passes_left > 32)  # what is nearly free is known now
-            free_angle = (
-                0.01 if from_the_met_pose else ((1e-5 if next_attempt > 62 else 0.01) if next_attempt > 0 else 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = max(1e-13, product_in_damping)
             rate_1_1 = -one_by_machine_scale * y
             slope_b = across_of_b * cos_b - along_of_b * sin_b  # the loop of S2: its equation by what it moves
             rate_b = 2.0 * motor_s2 / (slope_b if abs(slope_b) > product_in_rate_b else 1.0)
@@ -535,21 +527,27 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             sum_in_rate_1_3 = z_at_c + z_minus_z_at_b_c - z
             one_by_machine_scale_times_rate_c = one_by_machine_scale * rate_c
             rate_1_3 = one_by_machine_scale_times_rate_c * sum_in_rate_1_3 * cos_a1
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
             rate_2_1 = one_by_machine_scale * x
             rate_2_2 = -rate_b * sum_in_rate_1_2 * sin_a1
             rate_2_3 = one_by_machine_scale_times_rate_c * sum_in_rate_1_3 * sin_a1
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             y_minus_y_at_b_c = y - y_at_b_c
             x_minus_x_at_b_c = x - x_at_b_c
             rate_3_2 = rate_b * ((x_at_b + x_minus_x_at_b_c - x) * cos_a1 + (y_at_b + y_minus_y_at_b_c - y) * sin_a1)
             rate_3_3 = -one_by_machine_scale_times_rate_c * (
                 (x_at_c + x_minus_x_at_b_c - x) * cos_a1 + (y_at_c + y_minus_y_at_b_c - y) * sin_a1
             )
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            damping = max(product_in_damping_2, product_in_damping)  # no pivot is taken for zero
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -568,12 +566,26 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) and (attempt < 115) and (error_left < least_error_left)
+            least_error_left_now = error_left if is_nearer else least_error_left
+            next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
+            scans = (next_attempt > 1) and (next_attempt < 115)
+            mirrors = pose_is_close and (beside_elbow or beside_shoulder)
+            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            free_angle = (
+                0.01
+                if from_the_met_pose
+                else ((1e-5 if (next_attempt <= 115) and (next_attempt > 1) else 0.01) if next_attempt > 0 else 2e-12)
+            )
             nearest_turn_now = turn_of_attempt if is_nearer else nearest_turn
             # how far free angles are turned
             free_turn = (
-                nearest_turn_now + (turn_beside if (next_attempt > 62) and (next_attempt < 115) else 0.0)
-                if next_attempt > 62
-                else -360.0 * (1 - next_attempt) / 61.0
+                -27.692307692307693 * (115 - next_attempt)
+                if next_attempt > 115
+                else (
+                    nearest_turn_now + (turn_beside if (next_attempt >= 63) and (next_attempt < 115) else 0.0)
+                    if next_attempt >= 63
+                    else -360.0 * (1 - next_attempt) / 61.0
+                )
             )
             closed_reference_a4 = (
                 (tried_a4 if from_the_met_pose else 33.0 * free_turn + given_ref_a4) - offset_a4
@@ -704,10 +716,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             ) / closed_divisor_of_motor_m3
             closed_motor_m3 = arctan2(closed_sin_motor_m3 + 0.0, closed_cos_motor_m3 + 0.0)
             closed_axis_m3 = offset_m3 + closed_motor_m3 * RADIAN
-            passes_left_now = passes_left + (-8 if error > 0.999 * error_before else -1)
-            least_error_left_now = error_left if is_nearer else least_error_left
+            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
             shared_quotient = shrinking * RADIAN
-            if no_start_is_left or pose_is_met or (another and (next_attempt > 115)):
+            if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
             tried_a1 = (
                 closed_axis_a1
@@ -729,15 +740,15 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
                 else (tried_m3 if mirrors else tried_m3 + shared_quotient * step_m3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if (next_attempt > 1) and (next_attempt < 115) else 64) if another else passes_left_now
-            attempt = 116 if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else error
+            passes_left = (0 if scans else 20) if another else passes_left_now
+            attempt = (115 if scans else 129) if no_start_is_left else next_attempt
+            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
             turn_beside = (
                 -turn_beside / (1.0 if turn_beside > 0.0 else 2.0)
-                if (next_attempt > 62) and (next_attempt < 115)
+                if (next_attempt >= 63) and (next_attempt < 115)
                 else turn_beside
             )
         chosen_a1 = tried_a1

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 478
+    VALUES = 486
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -133,9 +133,9 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(
-            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(308):
+        for _ in range(450):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -256,14 +256,6 @@ class ArrayPrograms(Programs):
             pose_is_met = (
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_wrist))
             )
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
             z_minus_d1 = z - k.d1
             cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
@@ -277,9 +269,8 @@ class ArrayPrograms(Programs):
             z_minus_z_at_q6 = z - z_at_q6
             y_minus_y_at_q6 = y - y_at_q6
             rate_1_6 = (r32_at_q5 * y_minus_y_at_q6 - r22_at_q5 * z_minus_z_at_q6) * k.one_by_machine_scale
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
@@ -295,6 +286,34 @@ class ArrayPrograms(Programs):
             rate_2_5 = (r13_at_q234 * z_minus_z_at_q4 - x_minus_x_at_q5 * cos_q234) * k.one_by_machine_scale
             x_minus_x_at_q6 = x - x_at_q6
             rate_2_6 = k.one_by_machine_scale * (r12_at_q5 * z_minus_z_at_q6 - r32_at_q5 * x_minus_x_at_q6)
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            rate_3_2 = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = -k.one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
+            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * k.one_by_machine_scale
+            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * k.one_by_machine_scale
+            square_3 = (
+                rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            square_4 = r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            square_5 = 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            square_6 = 1.0 + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            product_in_damping = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5 + square_6)
+            product_in_damping_2 = 0.001 * error
+            # no pivot is taken for zero
+            damping = select(product_in_damping_2 > product_in_damping, product_in_damping_2, product_in_damping)
+            product_1_1 = damping + square_1
             product_1_2 = (
                 rate_1_1 * rate_2_1
                 + rate_1_2 * rate_2_2
@@ -303,11 +322,6 @@ class ArrayPrograms(Programs):
                 + rate_1_5 * rate_2_5
                 + rate_1_6 * rate_2_6
             )
-            rate_3_2 = k.one_by_machine_scale * (x * cos_q1 + y * sin_q1)
-            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = -k.one_by_machine_scale * ((x_at_q4 - x) * cos_q1 + (y_at_q4 - y) * sin_q1)
-            rate_3_5 = (r23_at_q234 * x_minus_x_at_q5 - r13_at_q234 * y_minus_y_at_q5) * k.one_by_machine_scale
-            rate_3_6 = (r22_at_q5 * x_minus_x_at_q6 - r12_at_q5 * y_minus_y_at_q6) * k.one_by_machine_scale
             product_1_3 = (
                 rate_1_2 * rate_3_2
                 + rate_1_3 * rate_3_3
@@ -319,15 +333,7 @@ class ArrayPrograms(Programs):
             product_1_4 = rate_1_2_plus_rate_1_3_plus_rate_1_4 * sin_q1 - r12_at_q5 * rate_1_6 - r13_at_q234 * rate_1_5
             product_1_5 = -rate_1_2_plus_rate_1_3_plus_rate_1_4 * cos_q1 - r22_at_q5 * rate_1_6 - r23_at_q234 * rate_1_5
             product_1_6 = rate_1_1 - rate_1_5 * cos_q234 - r32_at_q5 * rate_1_6
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
+            product_2_2 = damping + square_2
             product_2_3 = (
                 rate_2_2 * rate_3_2
                 + rate_2_3 * rate_3_3
@@ -339,24 +345,17 @@ class ArrayPrograms(Programs):
             product_2_4 = rate_2_2_plus_rate_2_3_plus_rate_2_4 * sin_q1 - r12_at_q5 * rate_2_6 - r13_at_q234 * rate_2_5
             product_2_5 = -rate_2_2_plus_rate_2_3_plus_rate_2_4 * cos_q1 - r22_at_q5 * rate_2_6 - r23_at_q234 * rate_2_5
             product_2_6 = rate_2_1 - rate_2_5 * cos_q234 - r32_at_q5 * rate_2_6
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
+            product_3_3 = damping + square_3
             rate_3_2_plus_rate_3_3_plus_rate_3_4 = rate_3_2 + rate_3_3 + rate_3_4
             product_3_4 = rate_3_2_plus_rate_3_3_plus_rate_3_4 * sin_q1 - r12_at_q5 * rate_3_6 - r13_at_q234 * rate_3_5
             product_3_5 = -rate_3_2_plus_rate_3_3_plus_rate_3_4 * cos_q1 - r22_at_q5 * rate_3_6 - r23_at_q234 * rate_3_5
             product_3_6 = -rate_3_5 * cos_q234 - r32_at_q5 * rate_3_6
-            product_4_4 = damping + r12_at_q5 * r12_at_q5 + r13_at_q234 * r13_at_q234 + 3.0 * sin_q1 * sin_q1
+            product_4_4 = damping + square_4
             product_4_5 = r12_at_q5 * r22_at_q5 + r13_at_q234 * r23_at_q234 - 3.0 * cos_q1 * sin_q1
             product_4_6 = r13_at_q234 * cos_q234 + r12_at_q5 * r32_at_q5
-            product_5_5 = damping + 3.0 * cos_q1 * cos_q1 + r22_at_q5 * r22_at_q5 + r23_at_q234 * r23_at_q234
+            product_5_5 = damping + square_5
             product_5_6 = r23_at_q234 * cos_q234 + r22_at_q5 * r32_at_q5
-            product_6_6 = 1.0 + damping + cos_q234 * cos_q234 + r32_at_q5 * r32_at_q5
+            product_6_6 = damping + square_6
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
@@ -411,12 +410,26 @@ class ArrayPrograms(Programs):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -522,10 +535,9 @@ class ArrayPrograms(Programs):
                 k.offset_a5 + atan2(closed_q6_radius_of_q5, closed_cos_q5) / DEGREE, closed_near_a5
             )
             closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -602,14 +614,14 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 504
+    VALUES = 512
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -162,9 +162,9 @@ class ArrayPrograms(Programs):
             turn_of_attempt,
             turn_beside,
         ) = initial(
-            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
+            start_a1, start_a2, start_a3, start_a4, start_a5, start_a6, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295
         )
-        for _ in range(308):
+        for _ in range(450):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -288,14 +288,6 @@ class ArrayPrograms(Programs):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow)) & (opposite(beside_hand))
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
             z_minus_d1 = z - k.d1
             cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
@@ -309,9 +301,8 @@ class ArrayPrograms(Programs):
             y_minus_y_at_q5 = y - y_at_q5
             rate_1_5 = k.one_by_machine_scale * (r22_at_q4 * z_minus_z_at_q5 - r32_at_q4 * y_minus_y_at_q5)
             rate_1_6 = k.one_by_machine_scale * (r21_at_q5 * z_minus_z_at_q5 - r31_at_q5 * y_minus_y_at_q5)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
@@ -327,6 +318,34 @@ class ArrayPrograms(Programs):
             x_minus_x_at_q5 = x - x_at_q5
             rate_2_5 = (r32_at_q4 * x_minus_x_at_q5 - r12_at_q4 * z_minus_z_at_q5) * k.one_by_machine_scale
             rate_2_6 = (r31_at_q5 * x_minus_x_at_q5 - r11_at_q5 * z_minus_z_at_q5) * k.one_by_machine_scale
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
+                + rate_2_6 * rate_2_6
+            )
+            rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
+            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
+            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
+            rate_3_6 = k.one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
+            square_3 = (
+                rate_3_2 * rate_3_2
+                + rate_3_3 * rate_3_3
+                + rate_3_4 * rate_3_4
+                + rate_3_5 * rate_3_5
+                + rate_3_6 * rate_3_6
+            )
+            square_4 = r11_at_q23 * r11_at_q23 + r11_at_q5 * r11_at_q5 + r12_at_q4 * r12_at_q4 + 2.0 * sin_q1 * sin_q1
+            square_5 = 2.0 * cos_q1 * cos_q1 + r21_at_q23 * r21_at_q23 + r21_at_q5 * r21_at_q5 + r22_at_q4 * r22_at_q4
+            square_6 = 1.0 + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5 + square_6)
+            # no pivot is taken for zero
+            damping = select(product_in_damping > product_in_damping_2, product_in_damping, product_in_damping_2)
+            product_1_1 = damping + square_1
             product_1_2 = (
                 rate_1_1 * rate_2_1
                 + rate_1_2 * rate_2_2
@@ -335,11 +354,6 @@ class ArrayPrograms(Programs):
                 + rate_1_5 * rate_2_5
                 + rate_1_6 * rate_2_6
             )
-            rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
-            rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
-            rate_3_4 = k.one_by_machine_scale * (r11_at_q23 * y_minus_y_at_q4 - r21_at_q23 * x_minus_x_at_q4)
-            rate_3_5 = k.one_by_machine_scale * (r12_at_q4 * y_minus_y_at_q5 - r22_at_q4 * x_minus_x_at_q5)
-            rate_3_6 = k.one_by_machine_scale * (r11_at_q5 * y_minus_y_at_q5 - r21_at_q5 * x_minus_x_at_q5)
             product_1_3 = (
                 rate_1_2 * rate_3_2
                 + rate_1_3 * rate_3_3
@@ -355,15 +369,7 @@ class ArrayPrograms(Programs):
                 r21_at_q23 * rate_1_4 + r21_at_q5 * rate_1_6 + r22_at_q4 * rate_1_5 - rate_1_2_plus_rate_1_3 * cos_q1
             )
             product_1_6 = rate_1_1 + r31_at_q5 * rate_1_6 + r32_at_q4 * rate_1_5 + rate_1_4 * sin_q23
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
-                + rate_2_6 * rate_2_6
-            )
+            product_2_2 = damping + square_2
             product_2_3 = (
                 rate_2_2 * rate_3_2
                 + rate_2_3 * rate_3_3
@@ -379,14 +385,7 @@ class ArrayPrograms(Programs):
                 r21_at_q23 * rate_2_4 + r21_at_q5 * rate_2_6 + r22_at_q4 * rate_2_5 - rate_2_2_plus_rate_2_3 * cos_q1
             )
             product_2_6 = rate_2_1 + r31_at_q5 * rate_2_6 + r32_at_q4 * rate_2_5 + rate_2_4 * sin_q23
-            product_3_3 = (
-                damping
-                + rate_3_2 * rate_3_2
-                + rate_3_3 * rate_3_3
-                + rate_3_4 * rate_3_4
-                + rate_3_5 * rate_3_5
-                + rate_3_6 * rate_3_6
-            )
+            product_3_3 = damping + square_3
             rate_3_2_plus_rate_3_3 = rate_3_2 + rate_3_3
             product_3_4 = (
                 r11_at_q23 * rate_3_4 + r11_at_q5 * rate_3_6 + r12_at_q4 * rate_3_5 + rate_3_2_plus_rate_3_3 * sin_q1
@@ -395,26 +394,14 @@ class ArrayPrograms(Programs):
                 r21_at_q23 * rate_3_4 + r21_at_q5 * rate_3_6 + r22_at_q4 * rate_3_5 - rate_3_2_plus_rate_3_3 * cos_q1
             )
             product_3_6 = r31_at_q5 * rate_3_6 + r32_at_q4 * rate_3_5 + rate_3_4 * sin_q23
-            product_4_4 = (
-                damping
-                + r11_at_q23 * r11_at_q23
-                + r11_at_q5 * r11_at_q5
-                + r12_at_q4 * r12_at_q4
-                + 2.0 * sin_q1 * sin_q1
-            )
+            product_4_4 = damping + square_4
             product_4_5 = (
                 r11_at_q23 * r21_at_q23 + r11_at_q5 * r21_at_q5 + r12_at_q4 * r22_at_q4 - 2.0 * cos_q1 * sin_q1
             )
             product_4_6 = r11_at_q23 * sin_q23 + r11_at_q5 * r31_at_q5 + r12_at_q4 * r32_at_q4
-            product_5_5 = (
-                damping
-                + 2.0 * cos_q1 * cos_q1
-                + r21_at_q23 * r21_at_q23
-                + r21_at_q5 * r21_at_q5
-                + r22_at_q4 * r22_at_q4
-            )
+            product_5_5 = damping + square_5
             product_5_6 = r21_at_q23 * sin_q23 + r21_at_q5 * r31_at_q5 + r22_at_q4 * r32_at_q4
-            product_6_6 = 1.0 + damping + r31_at_q5 * r31_at_q5 + r32_at_q4 * r32_at_q4 + sin_q23 * sin_q23
+            product_6_6 = damping + square_6
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5, multiplier_6 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
@@ -476,12 +463,26 @@ class ArrayPrograms(Programs):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_arm | beside_elbow | beside_hand)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             free_angle_times_machine_scale = free_angle * k.machine_scale
@@ -571,10 +572,9 @@ class ArrayPrograms(Programs):
             closed_axis_a6 = nearest_period(
                 k.offset_a6 + atan2(closed_direction_y_q6, closed_direction_x_q6) / DEGREE, closed_near_a6
             )
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -651,14 +651,14 @@ class ArrayPrograms(Programs):
                         closed_axis_a6,
                         select(mirrors, tried_a6, tried_a6 + shared_quotient * step_a6),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

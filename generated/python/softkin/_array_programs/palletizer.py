@@ -37,7 +37,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 269
+    VALUES = 274
     JACOBIAN_ROWS = (0, 1, 2, 5)
 
     def meet_point(self, given: Values, status: Codes) -> Values:
@@ -96,8 +96,8 @@ class ArrayPrograms(Programs):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = initial(start_a1, start_a2, start_a3, start_a4, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(308):
+        ) = initial(start_a1, start_a2, start_a3, start_a4, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(450):
             a1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_a1 = sin(a1)
             cos_a1 = cos(a1)
@@ -143,25 +143,17 @@ class ArrayPrograms(Programs):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder))
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
             rate_1_1 = -k.one_by_machine_scale * y
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
             sum_in_rate_1_2 = k.base_height + z_minus_z_at_a2_a3 - z
             rate_1_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * cos_a1
             sum_in_rate_1_3 = z_at_a3 + z_minus_z_at_a2_a3 - z
             rate_1_3 = k.one_by_machine_scale * sum_in_rate_1_3 * cos_a1
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
             rate_2_1 = k.one_by_machine_scale * x
             rate_2_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * sin_a1
             rate_2_3 = k.one_by_machine_scale * sum_in_rate_1_3 * sin_a1
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             x_minus_x_at_a2_a3 = x - x_at_a2_a3
             y_minus_y_at_a2_a3 = y - y_at_a2_a3
             rate_3_2 = k.one_by_machine_scale * (
@@ -170,10 +162,17 @@ class ArrayPrograms(Programs):
             rate_3_3 = -k.one_by_machine_scale * (
                 (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
             )
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            # no pivot is taken for zero
+            damping = select(product_in_damping > product_in_damping_2, product_in_damping, product_in_damping_2)
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -192,12 +191,26 @@ class ArrayPrograms(Programs):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a4 = (
                 select(from_the_met_pose, tried_a4, 33.0 * free_turn + given_ref_a4) - k.offset_a4
@@ -290,10 +303,9 @@ class ArrayPrograms(Programs):
             closed_axis_a3 = nearest_period(
                 k.offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) / DEGREE, closed_near_a3
             )
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -344,14 +356,14 @@ class ArrayPrograms(Programs):
                         select(mirrors, tried_a3, tried_a3 + shared_quotient * step_a3),
                     ),
                     select(another | from_the_met_pose, given_ref_a4, tried_a4),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 406
+    VALUES = 413
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
         """The axes that meet a pose, found by steps on the closure, and whether they do."""
@@ -160,8 +160,8 @@ class ArrayPrograms(Programs):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(308):
+        ) = initial(start_a1, start_a2, start_a3, start_a4, start_a5, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(450):
             a5 = (tried_a5 - k.offset_a5) * DEGREE
             sin_a5 = sin(a5)
             beside_tilt = given_sigma_tilt * sin_a5 < -2e-6
@@ -231,21 +231,7 @@ class ArrayPrograms(Programs):
             pose_is_met = (
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_tilt))
             )
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_tilt)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * k.machine_scale
-            no_start_is_left = (
-                another
-                & (closed_distance_a1 > free_angle_times_machine_scale)
-                & (closed_reach > free_angle)
-                & (closed_reach_2 > free_angle_times_machine_scale)
-            )
             rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
             sum_in_rate_1_2 = k.base_height + z_minus_z_at_a2_a3 - z
             rate_1_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * cos_a1
@@ -255,27 +241,25 @@ class ArrayPrograms(Programs):
             rate_1_4 = k.one_by_machine_scale * y_at_a4_minus_y
             product_in_rate_1_5 = (z_at_a5 - z) * k.one_by_machine_scale
             rate_1_5 = -product_in_rate_1_5 * r11_at_a4
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
-            product_1_1 = (
-                damping
-                + rate_1_1 * rate_1_1
+            square_1 = (
+                rate_1_1 * rate_1_1
                 + rate_1_2 * rate_1_2
                 + rate_1_3 * rate_1_3
                 + rate_1_4 * rate_1_4
                 + rate_1_5 * rate_1_5
             )
+            rate_2_1 = k.one_by_machine_scale * x
             rate_2_2 = -k.one_by_machine_scale * sum_in_rate_1_2 * sin_a1
             rate_2_3 = k.one_by_machine_scale * sum_in_rate_1_3 * sin_a1
             x_minus_x_at_a4 = x - x_at_a4
             rate_2_4 = k.one_by_machine_scale * x_minus_x_at_a4
             rate_2_5 = -product_in_rate_1_5 * r21_at_a4
-            product_1_2 = (
-                rate_1_1 * rate_2_1
-                + rate_1_2 * rate_2_2
-                + rate_1_3 * rate_2_3
-                + rate_1_4 * rate_2_4
-                + rate_1_5 * rate_2_5
+            square_2 = (
+                rate_2_1 * rate_2_1
+                + rate_2_2 * rate_2_2
+                + rate_2_3 * rate_2_3
+                + rate_2_4 * rate_2_4
+                + rate_2_5 * rate_2_5
             )
             x_minus_x_at_a2_a3 = x - x_at_a2_a3
             y_minus_y_at_a2_a3 = y - y_at_a2_a3
@@ -286,28 +270,36 @@ class ArrayPrograms(Programs):
                 (x_at_a3 + x_minus_x_at_a2_a3 - x) * cos_a1 + (y_at_a3 + y_minus_y_at_a2_a3 - y) * sin_a1
             )
             rate_3_5 = (r21_at_a4 * y_at_a4_minus_y - r11_at_a4 * x_minus_x_at_a4) * k.one_by_machine_scale
-            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_5 * rate_3_5
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3 + rate_3_5 * rate_3_5
             rate_4_5 = r11_at_a4 * r21_at_a5 - r11_at_a5 * r21_at_a4
-            product_1_4 = rate_1_5 * rate_4_5 + (-rate_1_1 - rate_1_4) * sin_a5
+            square_4 = rate_4_5 * rate_4_5 + 2.0 * sin_a5 * sin_a5
             rate_5_5 = r11_at_a4 * r11_at_a4 + r21_at_a4 * r21_at_a4
-            product_1_5 = rate_1_5 * rate_5_5
-            product_2_2 = (
-                damping
-                + rate_2_1 * rate_2_1
-                + rate_2_2 * rate_2_2
-                + rate_2_3 * rate_2_3
-                + rate_2_4 * rate_2_4
-                + rate_2_5 * rate_2_5
+            square_5 = rate_5_5 * rate_5_5
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3 + square_4 + square_5)
+            # no pivot is taken for zero
+            damping = select(product_in_damping > product_in_damping_2, product_in_damping, product_in_damping_2)
+            product_1_1 = damping + square_1
+            product_1_2 = (
+                rate_1_1 * rate_2_1
+                + rate_1_2 * rate_2_2
+                + rate_1_3 * rate_2_3
+                + rate_1_4 * rate_2_4
+                + rate_1_5 * rate_2_5
             )
+            product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3 + rate_1_5 * rate_3_5
+            product_1_4 = rate_1_5 * rate_4_5 + (-rate_1_1 - rate_1_4) * sin_a5
+            product_1_5 = rate_1_5 * rate_5_5
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3 + rate_2_5 * rate_3_5
             product_2_4 = rate_2_5 * rate_4_5 + (-rate_2_1 - rate_2_4) * sin_a5
             product_2_5 = rate_2_5 * rate_5_5
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3 + rate_3_5 * rate_3_5
+            product_3_3 = damping + square_3
             product_3_4 = rate_3_5 * rate_4_5
             product_3_5 = rate_3_5 * rate_5_5
-            product_4_4 = damping + rate_4_5 * rate_4_5 + 2.0 * sin_a5 * sin_a5
+            product_4_4 = damping + square_4
             product_4_5 = rate_4_5 * rate_5_5
-            product_5_5 = damping + rate_5_5 * rate_5_5
+            product_5_5 = damping + square_5
             _, multiplier_1, multiplier_2, multiplier_3, multiplier_4, multiplier_5 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5),
@@ -333,7 +325,6 @@ class ArrayPrograms(Programs):
             step_length = sqrt(
                 step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3 + step_a4 * step_a4 + step_a5 * step_a5
             )
-            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(
@@ -347,12 +338,34 @@ class ArrayPrograms(Programs):
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_tilt)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_a1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle)
+                & (closed_reach_2 > free_angle_times_machine_scale)
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_length_a1 = select(closed_distance_a1 > free_angle_times_machine_scale, closed_distance_a1, 1.0)
@@ -410,10 +423,9 @@ class ArrayPrograms(Programs):
             closed_axis_a4 = nearest_period(
                 k.offset_a4 + atan2(closed_direction_y_a4, closed_direction_x_a4) / DEGREE, closed_near_a4
             )
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -479,14 +491,14 @@ class ArrayPrograms(Programs):
                             tried_a5 + shared_quotient * step_a5,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),

@@ -38,7 +38,7 @@ class ArrayPrograms(Programs):
     """The programs of one machine, for its constants."""
 
     constants: Constants
-    VALUES = 445
+    VALUES = 455
     JACOBIAN_ROWS = (0, 1, 2)
 
     def meet_pose(self, given: Values, status: Codes) -> Values:
@@ -119,8 +119,8 @@ class ArrayPrograms(Programs):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(308):
+        ) = initial(start_a1, start_a2, start_a3, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(450):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -160,38 +160,31 @@ class ArrayPrograms(Programs):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * k.machine_scale
-            no_start_is_left = (
-                another
-                & (closed_distance_q1 > free_angle_times_machine_scale)
-                & (closed_reach > free_angle_times_machine_scale)
-            )
             rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
             cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
             rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = k.one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            # no pivot is taken for zero
+            damping = select(product_in_damping > product_in_damping_2, product_in_damping, product_in_damping_2)
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -204,19 +197,39 @@ class ArrayPrograms(Programs):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
@@ -253,10 +266,9 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -308,14 +320,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
@@ -418,8 +430,8 @@ class ArrayPrograms(Programs):
             nearest_turn,
             turn_of_attempt,
             turn_beside,
-        ) = initial(start_a1, start_a2, start_a3, 64, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
-        for _ in range(308):
+        ) = initial(start_a1, start_a2, start_a3, 20, 0, 9.0, 9.0, 0.0, 0.0, 5.901639344262295)
+        for _ in range(450):
             q1 = (tried_a1 - k.offset_a1) * DEGREE
             sin_q1 = sin(q1)
             cos_q1 = cos(q1)
@@ -462,38 +474,31 @@ class ArrayPrograms(Programs):
             # the error is rounding, and steps make it no smaller
             pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
-            next_attempt = attempt + select(another, 1, 0)
-            mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 32)  # what is nearly free is known now
-            free_angle = select(
-                from_the_met_pose, 0.01, select(next_attempt > 0, select(next_attempt > 62, 1e-5, 0.01), 2e-12)
-            )
-            free_angle_times_machine_scale = free_angle * k.machine_scale
-            no_start_is_left = (
-                another
-                & (closed_distance_q1 > free_angle_times_machine_scale)
-                & (closed_reach > free_angle_times_machine_scale)
-            )
             rate_1_1 = -k.one_by_machine_scale * y
-            rate_2_1 = k.one_by_machine_scale * x
             z_minus_d1 = z - k.d1
             cos_q1_times_one_by_machine_scale = k.one_by_machine_scale * cos_q1
             rate_1_2 = -z_minus_d1 * cos_q1_times_one_by_machine_scale
             z_minus_z_at_q3 = z - z_at_q3
             rate_1_3 = -z_minus_z_at_q3 * cos_q1_times_one_by_machine_scale
-            product_in_damping = 0.001 * error
-            damping = select(product_in_damping > 1e-13, product_in_damping, 1e-13)
-            product_1_1 = damping + rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            square_1 = rate_1_1 * rate_1_1 + rate_1_2 * rate_1_2 + rate_1_3 * rate_1_3
+            rate_2_1 = k.one_by_machine_scale * x
             sin_q1_times_one_by_machine_scale = k.one_by_machine_scale * sin_q1
             rate_2_2 = -z_minus_d1 * sin_q1_times_one_by_machine_scale
             rate_2_3 = -z_minus_z_at_q3 * sin_q1_times_one_by_machine_scale
-            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
+            square_2 = rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
             rate_3_2 = -k.one_by_machine_scale * ((x_at_q2 - x) * cos_q1 + (y_at_q2 - y) * sin_q1)
             rate_3_3 = -k.one_by_machine_scale * ((x_at_q3 - x) * cos_q1 + (y_at_q3 - y) * sin_q1)
+            square_3 = rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_in_damping = 0.001 * error
+            product_in_damping_2 = 2e-14 * (square_1 + square_2 + square_3)
+            # no pivot is taken for zero
+            damping = select(product_in_damping > product_in_damping_2, product_in_damping, product_in_damping_2)
+            product_1_1 = damping + square_1
+            product_1_2 = rate_1_1 * rate_2_1 + rate_1_2 * rate_2_2 + rate_1_3 * rate_2_3
             product_1_3 = rate_1_2 * rate_3_2 + rate_1_3 * rate_3_3
-            product_2_2 = damping + rate_2_1 * rate_2_1 + rate_2_2 * rate_2_2 + rate_2_3 * rate_2_3
+            product_2_2 = damping + square_2
             product_2_3 = rate_2_2 * rate_3_2 + rate_2_3 * rate_3_3
-            product_3_3 = damping + rate_3_2 * rate_3_2 + rate_3_3 * rate_3_3
+            product_3_3 = damping + square_3
             _, multiplier_1, multiplier_2, multiplier_3 = solve(
                 (
                     (product_1_1, product_1_2, product_1_3),
@@ -506,19 +511,39 @@ class ArrayPrograms(Programs):
             step_a2 = multiplier_1 * rate_1_2 + multiplier_2 * rate_2_2 + multiplier_3 * rate_3_2
             step_a3 = multiplier_1 * rate_1_3 + multiplier_2 * rate_2_3 + multiplier_3 * rate_3_3
             step_length = sqrt(step_a1 * step_a1 + step_a2 * step_a2 + step_a3 * step_a3)
-            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             # error that a step leaves: what it does not reach, and its curvature
             error_left = (
                 sqrt(multiplier_1 * multiplier_1 + multiplier_2 * multiplier_2 + multiplier_3 * multiplier_3) * damping
                 + step_length * step_length
             )
             is_nearer = (attempt > 1) & (attempt < 115) & (error_left < least_error_left)
+            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
+            scans = (next_attempt > 1) & (next_attempt < 115)
+            mirrors = pose_is_close & (beside_arm | beside_elbow)
+            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            free_angle = select(
+                from_the_met_pose,
+                0.01,
+                select(next_attempt > 0, select((next_attempt <= 115) & (next_attempt > 1), 1e-5, 0.01), 2e-12),
+            )
+            free_angle_times_machine_scale = free_angle * k.machine_scale
+            no_start_is_left = (
+                another
+                & (closed_distance_q1 > free_angle_times_machine_scale)
+                & (closed_reach > free_angle_times_machine_scale)
+            )
+            shrinking = select(step_length > 0.5, 0.5 / select(step_length > 0.5, step_length, 1.0), 1.0)
             nearest_turn_now = select(is_nearer, turn_of_attempt, nearest_turn)
             # how far free angles are turned
             free_turn = select(
-                next_attempt > 62,
-                nearest_turn_now + select((next_attempt > 62) & (next_attempt < 115), turn_beside, 0.0),
-                -360.0 * (1 - next_attempt) / 61.0,
+                next_attempt > 115,
+                -27.692307692307693 * (115 - next_attempt),
+                select(
+                    next_attempt >= 63,
+                    nearest_turn_now + select((next_attempt >= 63) & (next_attempt < 115), turn_beside, 0.0),
+                    -360.0 * (1 - next_attempt) / 61.0,
+                ),
             )
             closed_reference_a1 = (select(from_the_met_pose, tried_a1, free_turn + given_ref_a1) - k.offset_a1) * DEGREE
             closed_divisor_q1 = select(
@@ -555,10 +580,9 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
-            passes_left_now = passes_left + select(error > 0.999 * error_before, -8, -1)
-            least_error_left_now = select(is_nearer, error_left, least_error_left)
+            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
             shared_quotient = shrinking / DEGREE
-            done = no_start_is_left | pose_is_met | (another & (next_attempt > 115))
+            done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
                 break
             (
@@ -610,14 +634,14 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select((next_attempt > 1) & (next_attempt < 115), 0, 64), passes_left_now),
-                    select(no_start_is_left, 116, next_attempt),
-                    select(another | mirrors, 9.0, error),
+                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(no_start_is_left, select(scans, 115, 129), next_attempt),
+                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
                     select(
-                        (next_attempt > 62) & (next_attempt < 115),
+                        (next_attempt >= 63) & (next_attempt < 115),
                         -turn_beside / select(turn_beside > 0.0, 1.0, 2.0),
                         turn_beside,
                     ),
