@@ -12,9 +12,8 @@ from softkin._chain import bias, columns
 from softkin._chain import passed as chained
 from softkin._core import TWIST
 from softkin._radians_array import RadianPrograms
-from softkin._tools import TILTS
+from softkin._tools import rows_by_name
 from softkin._types import Diagnosis
-from softkin._vectors import dot, transposed
 
 if TYPE_CHECKING:
     from softkin._calibrated import Calibrated
@@ -68,10 +67,7 @@ class CalibratedPrograms(Programs):
         """The rows of the Jacobian."""
         rows, status = self.twist(axes)
         (_, rotation), _ = chained(self.machine._true, self.machine._motors(axes), np.cos, np.sin)
-        known = dict(zip(TWIST, rows, strict=True))
-        for name, along in zip(TILTS, transposed(rotation), strict=False):
-            known[name] = tuple(dot(along, turn) for turn in zip(*rows[3:], strict=True))
-        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), status
+        return rows_by_name(self.machine.JACOBIAN_ROWS, rows, rotation), status
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the tool."""
@@ -85,9 +81,7 @@ class CalibratedPrograms(Programs):
         """The acceleration of the rows of the Jacobian at constant speeds of the axes."""
         rows, status = self.twist_bias(axes, speeds)
         (_, rotation), _ = chained(self.machine._true, self.machine._motors(axes), np.cos, np.sin)
-        known = dict(zip(TWIST, rows, strict=True))
-        known |= {name: dot(along, rows[3:]) for name, along in zip(TILTS, transposed(rotation), strict=False)}
-        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), status
+        return rows_by_name(self.machine.JACOBIAN_ROWS, rows, rotation), status
 
     def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
         """The acceleration of the twist of the tool at constant speeds of the axes."""

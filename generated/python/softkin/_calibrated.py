@@ -21,9 +21,8 @@ from softkin._meeting import Meeting
 from softkin._mounted import PLAIN, Mounted
 from softkin._scalar import DEGREE, reasonable
 from softkin._start import IterativeForward
-from softkin._tools import TILTS
+from softkin._tools import rows_by_name
 from softkin._types import Diagnosis, FrameLike, KinematicsError, Matrix, Reals, Rotation, Signs, Status, Turns, Vector
-from softkin._vectors import dot, transposed
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -153,12 +152,7 @@ class Calibrated(Around):
         rows, rotation = self._twist(axes), self._orientation(axes)
         if isinstance(rows, Status) or isinstance(rotation, Status):
             return Status.BAD_INPUT
-        known = dict(zip(TWIST, rows, strict=True))
-        for name, direction in zip(TILTS, transposed(rotation), strict=False):
-            known[name] = tuple(
-                sum(a * b for a, b in zip(direction, turn, strict=True)) for turn in zip(*rows[3:], strict=True)
-            )
-        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+        return rows_by_name(self.JACOBIAN_ROWS, rows, rotation)
 
     def _twist(self, axes: Reals) -> Matrix | Status:
         if not reasonable(*axes):
@@ -172,9 +166,7 @@ class Calibrated(Around):
         rows, rotation = self._twist_bias(axes, speeds), self._orientation(axes)
         if isinstance(rows, Status) or isinstance(rotation, Status):
             return Status.BAD_INPUT
-        known = dict(zip(TWIST, rows, strict=True))
-        known |= {name: dot(axis, rows[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
-        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+        return rows_by_name(self.JACOBIAN_ROWS, rows, rotation)
 
     def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
         if not reasonable(*axes):

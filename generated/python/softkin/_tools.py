@@ -15,13 +15,15 @@ says which tools are possible (`Mechanism._follows`):
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import hypot
+from typing import Any
 
 from softkin._constants import EXACT, HELD
 from softkin._core import DIRECTION, FIXED, ONE_AXIS, SEVERAL_AXES, TWIST, Mechanism
 from softkin._frame import ORIGIN, Frame
-from softkin._types import KinematicsError, Status, Vector
-from softkin._vectors import turned
+from softkin._types import KinematicsError, Rotation, Status, Vector
+from softkin._vectors import dot, transposed, turned
 
 UNNOTICED = HELD
 """A shift of a tool is not noticed where it is at most this share of the tool."""
@@ -81,3 +83,18 @@ def rows_of(bare: Mechanism, base: Frame, tool: Frame) -> tuple[str, ...]:
         outside = [i for i in range(3) if i not in inside]
         keeps = keeps and all(abs(base.rotation[o][i]) <= EXACT for o in outside for i in inside)
     return rows if keeps else TWIST
+
+
+def rows_by_name(
+    names: Sequence[str], twist: Sequence[Any], rotation: Rotation, others: Iterable[tuple[str, Any]] = ()
+) -> tuple[Any, ...]:
+    """The rows of these names: of a twist, its turns about the axes of the tool, and others that are known.
+
+    twist: six rows with an entry an axis; of an acceleration each is one number. An entry may be an array.
+    """
+    turns = twist[3:]
+    known = {**dict(others), **dict(zip(TWIST, twist, strict=True))}
+    for name, along in zip(TILTS, transposed(rotation), strict=False):
+        has_entries = isinstance(turns[0], tuple)
+        known[name] = tuple([dot(along, t) for t in zip(*turns, strict=True)]) if has_entries else dot(along, turns)
+    return tuple([known[name] for name in names])

@@ -22,11 +22,11 @@ from softkin._array import (
 )
 from softkin._array_coupled import all_six, bias_of_all_six, both
 from softkin._core import PITCH, TURN, TWIST
-from softkin._tools import TILTS
+from softkin._frame import IDENTITY
+from softkin._tools import TILTS, rows_by_name
 from softkin._types import Status
 from softkin._vectors import (
     at_end,
-    dot,
     moved,
     plus,
     product,
@@ -121,16 +121,14 @@ class MountedPrograms(Programs):
     def jacobian(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The rows of the tool's twist; the rows about axes of the wrist are those of the bare machine."""
         own, status = self.twist(axes)
-        known = dict(zip(TWIST, own, strict=True))
         bare, outcome = self.programs.jacobian(axes)
-        for name, row in zip(self.machine.bare.JACOBIAN_ROWS, bare, strict=True):
-            known.setdefault(name, row)
-        if TILTS[0] in known:
-            (_, rotation, _), failed = self.forward(axes)
-            status = both(status, failed)
-            for name, axis in zip(TILTS, transposed(rotation), strict=False):
-                known[name] = tuple(axis[0] * x + axis[1] * y + axis[2] * z for x, y, z in zip(*own[3:], strict=True))
-        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), both(status, outcome)
+        return self._named(axes, own, bare), both(status, outcome)
+
+    def _named(self, axes: Reals, own: Reals, bare: Reals) -> Reals:
+        """The rows of the machine, by the twist of the tool and the rows of the bare machine."""
+        names = self.machine.JACOBIAN_ROWS
+        rotation = self.forward(axes)[0][1] if TILTS[0] in names else IDENTITY
+        return rows_by_name(names, own, rotation, zip(self.machine.bare.JACOBIAN_ROWS, bare, strict=True))
 
     def twist(self, axes: Reals) -> tuple[Matrix, Codes]:
         """The twist of the tool."""
@@ -145,15 +143,8 @@ class MountedPrograms(Programs):
     def bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
         """As `jacobian`: the axes of the tool turn with it, so that they change no turn about them."""
         own, status = self.twist_bias(axes, speeds)
-        known = dict(zip(TWIST, own, strict=True))
         bare, outcome = self.programs.bias(axes, speeds)
-        for name, row in zip(self.machine.bare.JACOBIAN_ROWS, bare, strict=True):
-            known.setdefault(name, row)
-        if TILTS[0] in known:
-            (_, rotation, _), failed = self.forward(axes)
-            status = both(status, failed)
-            known |= {name: dot(axis, own[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
-        return tuple(known[name] for name in self.machine.JACOBIAN_ROWS), both(status, outcome)
+        return self._named(axes, own, bare), both(status, outcome)
 
     def twist_bias(self, axes: Reals, speeds: Reals) -> tuple[Reals, Codes]:
         """The acceleration of the twist of the tool at constant speeds of the axes."""

@@ -18,7 +18,7 @@ from softkin._frame import IDENTITY, ORIGIN, Frame
 from softkin._scalar import reasonable
 from softkin._search import SearchedInverse
 from softkin._start import IterativeForward
-from softkin._tools import TILTS, check_tool, known_shift, rows_of
+from softkin._tools import check_tool, known_shift, rows_by_name, rows_of
 from softkin._types import (
     Diagnosis,
     FrameLike,
@@ -35,7 +35,6 @@ from softkin._types import (
 )
 from softkin._vectors import (
     at_end,
-    dot,
     moved,
     plus,
     product,
@@ -239,14 +238,7 @@ class Mounted(Around):
             if isinstance(part, Status):
                 return part
         assert not (isinstance(own, Status) or isinstance(rotation, Status) or isinstance(bare, Status))
-        known = dict(zip(TWIST, own, strict=True)) | {
-            name: row for name, row in zip(self.bare.JACOBIAN_ROWS, bare, strict=True) if name not in (*TWIST, *TILTS)
-        }
-        for name, axis in zip(TILTS, transposed(rotation), strict=False):
-            known[name] = tuple(
-                sum(a * t for a, t in zip(axis, turn, strict=True)) for turn in zip(*own[3:], strict=True)
-            )
-        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, zip(self.bare.JACOBIAN_ROWS, bare, strict=True))
 
     def _twist(self, axes: Reals) -> Matrix | Status:
         rows, flange = self.bare._twist(axes), self.bare._orientation(axes)
@@ -269,9 +261,7 @@ class Mounted(Around):
             return rotation
         if isinstance(bare, Status):
             return bare
-        known = dict(zip(self.bare.JACOBIAN_ROWS, bare, strict=True)) | dict(zip(TWIST, own, strict=True))
-        known |= {name: dot(axis, own[3:]) for name, axis in zip(TILTS, transposed(rotation), strict=False)}
-        return tuple(known[name] for name in self.JACOBIAN_ROWS)
+        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, zip(self.bare.JACOBIAN_ROWS, bare, strict=True))
 
     def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
         rows, flange, own = self.bare._twist(axes), self.bare._orientation(axes), self.bare._twist_bias(axes, speeds)
