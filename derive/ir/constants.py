@@ -98,7 +98,7 @@ STALLS = 20
 HARDLY_NEARER = sp.Float("0.99")
 """A step came hardly nearer that leaves more than this share of the least error so far."""
 MOST_STEPS = 450
-"""The largest number of steps from all starts together."""
+"""The largest number of steps from all starts together; with deviations more go towards a goal that is moved."""
 COST_OF_A_STALL = 8
 """As many steps are given up for it: a pose that the machine does not have ends after a few."""
 LONGEST_STEP = sp.Rational(1, 2)

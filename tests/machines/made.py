@@ -44,6 +44,11 @@ class Made:
         """Whether it has a block: one with more than six axes has none."""
         return "st" in self.built.parts
 
+    @property
+    def is_searched(self) -> bool:
+        """Whether its solutions are found by a search along a joint."""
+        return hasattr(self.robot, "SIDES")
+
     def controller(self) -> Controller:
         """Its block, initialised."""
         text = self.built.parts["st"]["text"]

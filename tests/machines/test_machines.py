@@ -24,24 +24,20 @@ _CLOSED, _SAME, _NEAR_SINGULAR = 1e-9, 1e-7, 1e-3
 _DOUBLE, _NEAR_DOUBLE = 1e-6, 1e-3
 
 
-def is_searched(machine: Made) -> bool:
-    return hasattr(machine.robot, "SIDES")
-
-
 Answers = Iterator[tuple[tuple[int, ...], Sequence[float] | None]]
 
 
 def own_grid(machine: Made) -> Array:
     """Poses of the grid at which the machine may stand; of a search, which takes long, each third."""
     axes = grid(machine)
-    return axes[is_own(machine, axes)][:: 3 if is_searched(machine) else 1]
+    return axes[is_own(machine, axes)][:: 3 if machine.is_searched else 1]
 
 
 def answers(machine: Made, frame: softkin.Frame, axes: list[float]) -> Answers:
     """The answer on every branch; of a search by calls for one branch, which a double root does not mislead."""
     for solution in machine.robot.inverse_all(frame, axes):
         found = solution.axes
-        if is_searched(machine):
+        if machine.is_searched:
             with suppress(KinematicsError):
                 found = None
                 found = machine.robot.inverse(frame, solution.configuration, axes)
@@ -57,7 +53,7 @@ def are_same(machine: Made, one: Array, other: Array, frame: softkin.Frame) -> b
     is_double = any(min(np.abs(margins(machine, axes.tolist()))) < _DOUBLE for axes in (one, other))
     pose = np.array([frame.position]), np.array([frame.rotation])
     closes = all(machine.error(axes[None], *pose).max() <= _CLOSED for axes in (one, other))
-    return is_double and closes and (is_searched(machine) or bool(np.abs(one - other).max() <= _NEAR_DOUBLE))
+    return is_double and closes and (machine.is_searched or bool(np.abs(one - other).max() <= _NEAR_DOUBLE))
 
 
 @EVERY
@@ -115,7 +111,7 @@ def test_both_languages_say_the_same(name: str) -> None:
         assert len(machine.mechanism.joints) > 6
         return
     controller, robot = machine.controller(), machine.robot
-    chosen = grid(machine)[:: 30 if is_searched(machine) else 5]
+    chosen = grid(machine)[:: 30 if machine.is_searched else 5]
     for axes in chosen.tolist():
         there = forward_in_both(controller, robot, axes, machine.reach)
         assert there is not None or not is_own(machine, np.array([axes]))[0]

@@ -53,7 +53,7 @@ def test_next_to_right_angles(name: str) -> None:
     twelfth.
     """
     machine, within = made(name), 1e-10 if name in PARALLEL else 1e-9
-    axes = corners(machine)[:: 3 if hasattr(machine.robot, "SIDES") else 1]
+    axes = corners(machine)[:: 3 if machine.is_searched else 1]
     every_pose_is_met(machine, axes, axes, within)
     for row in axes[::EVERY_TWELFTH]:
         position, rotation = machine.closure.poses(row[None])

@@ -1,8 +1,9 @@
 """Steps on the closure: the program that meets a pose, or a point off the flange, from what the closed form gives.
 
 It repeats q' = q + J^T (J J^T + d)^-1 e, the step of damped least squares. Here e is the error of the pose at q, and
-the damping d is a share of its size. A fold or a free angle is no special case: what does not change the pose does not
-move. A solution counts if its error is rounding, and no branch has the wrong sign.
+the damping d is a share of its size, but never so small that a pivot is taken for zero. A fold or a free angle is no
+special case: what does not change the pose does not move. A solution counts if its error is rounding, and no branch has
+the wrong sign.
 
 Where the steps meet nothing, the closed form gives another start: with nearly free angles at the reference, then with
 them turned to where one step leaves the least error, of many values around the circle, at last at some of these. If
@@ -40,7 +41,6 @@ from derive.kinematics.lost_digits.starts import (
     AGAIN,
     ANOTHER,
     ATTEMPT,
-    BEFORE,
     BESIDE,
     BEYOND,
     ENDS,
@@ -48,6 +48,7 @@ from derive.kinematics.lost_digits.starts import (
     GOAL,
     IS_MET,
     LAST,
+    LEAST,
     LEFT,
     LEFT_NOW,
     LEFT_OVER,
@@ -76,7 +77,7 @@ _ZERO, _ONE = sp.Integer(0), sp.Integer(1)
 EXACT = BOUNDARY / 10
 """An error of a machine with deviations is rounding up to this: every pose of it is met by steps."""
 FIRST = sp.Integer(9)
-"""Larger than every error: the error before the first step."""
+"""Larger than every error: the least error before the first step."""
 
 
 def varying(machine: Machine, branch: Program) -> set[sp.Symbol]:
@@ -124,7 +125,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
     attempt = (*next_attempt(following, machine.deviates is not None), *closed, ending(closed, *moved))
     step = (*at_step(machine), *error_at_step(machine), *_sides(machine), *_step(machine), *attempt)
     return Iterate(
-        state=(*map(tried, joints), LEFT, ATTEMPT, BEFORE, NEAREST, NEAREST_TURN, TURN, BESIDE, *states),
+        state=(*map(tried, joints), LEFT, ATTEMPT, LEAST, NEAREST, NEAREST_TURN, TURN, BESIDE, *states),
         start=(
             *map(started, joints),
             sp.Integer(STALLS),
@@ -141,7 +142,7 @@ def _loop(machine: Machine, branch: Program) -> Iterate:
             *(_next(machine, j, at_reference.get(j, starts[j])) for j in joints),
             Select(ANOTHER, Select(SCANS, _ZERO, sp.Integer(STALLS)), LEFT_NOW),
             Select(ENDS, Select(SCANS, sp.Integer(SCAN_ENDS), sp.Integer(LAST + 1)), following),
-            Select(sp.Or(ANOTHER, MIRRORS), FIRST, Select(sp.Lt(real("error"), BEFORE), real("error"), BEFORE)),
+            Select(sp.Or(ANOTHER, MIRRORS), FIRST, Select(sp.Lt(real("error"), LEAST), real("error"), LEAST)),
             NEAREST_NOW,
             NEAREST_TURN_NOW,
             FREE_TURN,
@@ -250,7 +251,7 @@ def _sides(machine: Machine) -> list[Statement]:
     error, close, met = real("error"), flag("pose_is_close"), IS_MET
     wrong = {a: flag(f"beside_{a.branch.name}") for a in machine.assignments}
     sides = [Let(w, sp.Lt(ToReal(a.sigma) * real(f"branch_{a.branch.name}"), -2 * NEARLY)) for a, w in wrong.items()]
-    is_last = sp.Or(sp.Gt(2 * error, BEFORE), sp.Le(LEFT, 0))
+    is_last = sp.Or(sp.Gt(2 * error, LEAST), sp.Le(LEFT, 0))
     bound = BOUNDARY if machine.deviates is None else EXACT
     is_close = sp.Or(sp.Le(error, bound), sp.And(sp.Le(error, CONVERGED), is_last))
     return [
@@ -281,7 +282,7 @@ def _step(machine: Machine) -> list[Statement]:
     steps = [real(f"step_{j.key}") for j in machine.mechanism.joints]
     length = real("step_length")
     return [
-        Let(_NO_NEARER, sp.Gt(real("error"), BEFORE)),
+        Let(_NO_NEARER, sp.Gt(real("error"), LEAST)),
         *(Let(square, product[k, k]) for k, square in enumerate(squares)),
         Let(damping, larger(share * real("error"), 2 * PIVOT * sp.Add(*squares)), "no pivot is taken for zero"),
         *(Let(n, squares[k[0]] + damping if k[0] == k[1] else product[k]) for k, n in names.items()),

@@ -31,9 +31,9 @@ DRAWN = {name: real(f"drawn_{name.name}") for name in GOAL}
 """The pose that a machine with deviations would have as it is drawn."""
 ASKED = {name: real(f"asked_{name.name}") for name in GOAL}
 """The pose of which its closed form is asked: if steps meet the goal on another branch, that of the drawing there."""
-LEFT, ATTEMPT, BEFORE = count("passes_left"), count("attempt"), real("error_before")
+LEFT, ATTEMPT, LEAST = count("stalls_left"), count("attempt"), real("least_error")
 ANOTHER, MIRRORS, IS_MET = flag("another"), flag("mirrors"), flag("pose_is_met")
-LEFT_NOW = count("passes_left_now")
+LEFT_NOW = count("stalls_left_now")
 TURN, BESIDE = real("turn_of_attempt"), real("turn_beside")
 AGAIN = flag("from_the_met_pose")
 ENDS, SCANS = flag("no_start_is_left"), flag("scans")
@@ -75,7 +75,7 @@ def next_attempt(following: sp.Symbol, deviates: bool) -> tuple[Let, ...]:
     is_scanned = sp.And(sp.Gt(following, 1), sp.Le(following, SCAN_ENDS))
     far_from_free, nearer_free = (OFTEN_FREE, OFTEN_FREE) if deviates else (DOUBTFUL, NEARLY_FREE)
     free = Select(sp.Gt(following, 0), Select(is_scanned, nearer_free, far_from_free), FREE_ANGLE)
-    stalls = sp.Or(MIRRORS, sp.Gt(real("error"), HARDLY_NEARER * BEFORE))
+    stalls = sp.Or(MIRRORS, sp.Gt(real("error"), HARDLY_NEARER * LEAST))
     is_far = sp.And(sp.Eq(ATTEMPT, REFINING_BEGINS - 1), sp.Gt(NEAREST_NOW, NEAR))
     around = AROUND * ToReal(following - SCAN_ENDS)
     scanned = STEP * ToReal(following - 1)

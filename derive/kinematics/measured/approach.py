@@ -29,8 +29,9 @@ from derive.kinematics.lost_digits.closure_steps import (
     varying,
 )
 from derive.kinematics.lost_digits.machine import Machine
-from derive.kinematics.lost_digits.starts import BEFORE, GOAL, tried
+from derive.kinematics.lost_digits.starts import GOAL, tried
 
+_BEFORE = real("error_before")
 _FEW = 8
 """The largest number of steps; four meet a pose where deviations are of the usual size."""
 _SHORT = sp.Float("1e-8")
@@ -96,12 +97,12 @@ def _steps(machine: Machine, lean: Machine) -> Iterate:
     body = (
         *at_step(lean),
         *error_at_step(lean),
-        Let(_AWAY, sp.Gt(_HERE, BEFORE)),
+        Let(_AWAY, sp.Gt(_HERE, _BEFORE)),
         Solve(tuple(step.values()), matrix, errors, _SLOPE),
         Let(_ENDS, sp.And(sp.Le(length, _SHORT), sp.Gt(sp.Abs(_SLOPE), 0), sp.Le(_HERE, NEARLY))),
     )
     return Iterate(
-        state=(*map(tried, joints), BEFORE),
+        state=(*map(tried, joints), _BEFORE),
         start=(*map(started, joints), FIRST),
         step=tuple(s for s in body if isinstance(s, Let | Solve)),
         following=(*(_stepped(machine, j) for j in joints), _HERE),

@@ -228,9 +228,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a4 = start_a4;
   double tried_a5 = start_a5;
   double tried_a6 = start_a6;
-  int passes_left = 20;
+  int stalls_left = 20;
   int attempt = 0;
-  double error_before = 9.0;
+  double least_error = 9.0;
   double least_error_left = 9.0;
   double nearest_turn = 0.0;
   double turn_of_attempt = 0.0;
@@ -260,7 +260,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       closed_axis_a4, closed_r13_from_q123, closed_q4_radius_of_q5, closed_axis_a5, closed_r22_from_q1,
       closed_r12_from_q1, closed_r32_from_q123, closed_direction_x_q6, closed_r21_from_q1,
       closed_r11_from_q1, closed_r31_from_q123, closed_direction_y_q6, closed_axis_a6, shared_quotient;
-  int next_attempt, passes_left_now;
+  int next_attempt, stalls_left_now;
   bool beside_arm, beside_elbow, beside_hand, another, pose_is_close, pose_is_met, is_nearer, scans, mirrors,
       from_the_met_pose, no_start_is_left;
   for (int pass = 0; pass < 450; pass += 1) {
@@ -347,9 +347,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     /* error of the pose, in characteristic lengths and radians */
     error = value_in_error + sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4
         + error_5*error_5 + error_6*error_6);
-    another = passes_left <= 0;
+    another = stalls_left <= 0;
     /* the error is rounding, and steps make it no smaller */
-    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > least_error)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow) && (!beside_hand);
     rate_1_1 = -k->one_by_machine_scale*y;
     z_minus_d1 = z - k->d1;
@@ -458,7 +458,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = (least_error_left_now > 0.01) && (attempt == 62) ? 115 : attempt + (another ? 1 : 0);
     scans = (next_attempt > 1) && (next_attempt < 115);
     mirrors = pose_is_close && (beside_arm || beside_elbow || beside_hand);
-    from_the_met_pose = mirrors && (passes_left > 10); /* what is nearly free is known now */
+    from_the_met_pose = mirrors && (stalls_left > 10); /* what is nearly free is known now */
     free_angle = from_the_met_pose ? 0.01
         : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 1) ? 1e-5 : 0.01) : 2e-12);
     nearest_turn_now = is_nearer ? turn_of_attempt : nearest_turn;
@@ -530,7 +530,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         - closed_direction_y_q4*closed_r31_from_q123;
     closed_axis_a6 = softkin_on_turn(k->offset_a6
         + softkin_angle_of(closed_direction_y_q6, closed_direction_x_q6)*SOFTKIN_RADIAN, closed_near_a6);
-    passes_left_now = passes_left + (mirrors || (error > 0.99*error_before) ? -1 : 0);
+    stalls_left_now = stalls_left + (mirrors || (error > 0.99*least_error) ? -1 : 0);
     shared_quotient = shrinking*SOFTKIN_RADIAN;
     if (pose_is_met || (no_start_is_left && (!scans)) || (another && (next_attempt > 128))) {
       break;
@@ -550,9 +550,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : (mirrors ? tried_a5 : tried_a5 + shared_quotient*step_a5));
     tried_a6 = (another || from_the_met_pose ? closed_axis_a6
         : (mirrors ? tried_a6 : tried_a6 + shared_quotient*step_a6));
-    passes_left = (another ? (scans ? 0 : 20) : passes_left_now);
+    stalls_left = (another ? (scans ? 0 : 20) : stalls_left_now);
     attempt = (no_start_is_left ? (scans ? 115 : 129) : next_attempt);
-    error_before = (another || mirrors ? 9.0 : (error < error_before ? error : error_before));
+    least_error = (another || mirrors ? 9.0 : (error < least_error ? error : least_error));
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;

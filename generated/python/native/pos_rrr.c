@@ -160,9 +160,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
   double tried_a1 = start_a1;
   double tried_a2 = start_a2;
   double tried_a3 = start_a3;
-  int passes_left = 20;
+  int stalls_left = 20;
   int attempt = 0;
-  double error_before = 9.0;
+  double least_error = 9.0;
   double least_error_left = 9.0;
   double nearest_turn = 0.0;
   double turn_of_attempt = 0.0;
@@ -178,7 +178,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
       nearest_turn_now, free_turn, closed_reference_a1, closed_divisor_q1, closed_cos_q1, closed_sin_q1,
       closed_axis_a1, closed_reference_a2, closed_direction_x_q2, closed_direction_y_q2, closed_axis_a2,
       shared_quotient;
-  int next_attempt, passes_left_now;
+  int next_attempt, stalls_left_now;
   bool beside_arm, beside_elbow, another, pose_is_close, pose_is_met, is_nearer, scans, mirrors,
       from_the_met_pose, no_start_is_left;
   for (int pass = 0; pass < 450; pass += 1) {
@@ -217,9 +217,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     error_3 = (goal_z - z)*k->one_by_machine_scale;
     /* error of the pose, in characteristic lengths and radians */
     error = sqrt(error_1*error_1 + error_2*error_2 + error_3*error_3);
-    another = passes_left <= 0;
+    another = stalls_left <= 0;
     /* the error is rounding, and steps make it no smaller */
-    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > error_before)));
+    pose_is_close = (error <= 1e-12) || ((error <= 1e-11) && (another || (2.0*error > least_error)));
     pose_is_met = pose_is_close && (!beside_arm) && (!beside_elbow);
     rate_1_1 = -k->one_by_machine_scale*y;
     z_minus_d1 = z - k->d1;
@@ -264,7 +264,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     next_attempt = (least_error_left_now > 0.01) && (attempt == 62) ? 115 : attempt + (another ? 1 : 0);
     scans = (next_attempt > 1) && (next_attempt < 115);
     mirrors = pose_is_close && (beside_arm || beside_elbow);
-    from_the_met_pose = mirrors && (passes_left > 10); /* what is nearly free is known now */
+    from_the_met_pose = mirrors && (stalls_left > 10); /* what is nearly free is known now */
     free_angle = from_the_met_pose ? 0.01
         : (next_attempt > 0 ? ((next_attempt <= 115) && (next_attempt > 1) ? 1e-5 : 0.01) : 2e-12);
     free_angle_times_machine_scale = free_angle*k->machine_scale;
@@ -299,7 +299,7 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
         : sin(closed_reference_a2);
     closed_axis_a2 = softkin_on_turn(k->offset_a2
         + softkin_angle_of(closed_direction_y_q2, closed_direction_x_q2)*SOFTKIN_RADIAN, closed_near_a2);
-    passes_left_now = passes_left + (mirrors || (error > 0.99*error_before) ? -1 : 0);
+    stalls_left_now = stalls_left + (mirrors || (error > 0.99*least_error) ? -1 : 0);
     shared_quotient = shrinking*SOFTKIN_RADIAN;
     if (pose_is_met || (no_start_is_left && (!scans)) || (another && (next_attempt > 128))) {
       break;
@@ -312,9 +312,9 @@ static softkin_status find_meet_pose(const void *machine, const double *given, d
     tried_a3 = (another || from_the_met_pose ? closed_axis_a3
         : (mirrors ? (beside_elbow ? 2.0*closed_axis_a3 - tried_a3 : tried_a3) : tried_a3
         + shared_quotient*step_a3));
-    passes_left = (another ? (scans ? 0 : 20) : passes_left_now);
+    stalls_left = (another ? (scans ? 0 : 20) : stalls_left_now);
     attempt = (no_start_is_left ? (scans ? 115 : 129) : next_attempt);
-    error_before = (another || mirrors ? 9.0 : (error < error_before ? error : error_before));
+    least_error = (another || mirrors ? 9.0 : (error < least_error ? error : least_error));
     least_error_left = least_error_left_now;
     nearest_turn = nearest_turn_now;
     turn_of_attempt = free_turn;

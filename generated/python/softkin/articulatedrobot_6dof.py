@@ -112,7 +112,7 @@ class ArticulatedRobot6DOF(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
-    KEY = "articulatedrobot_6dof 7c783df17ca1843e"
+    KEY = "articulatedrobot_6dof d56520428f203664"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -413,9 +413,9 @@ class ArticulatedRobot6DOF(Mechanism):
             tried_a4,
             tried_a5,
             tried_a6,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -541,9 +541,9 @@ class ArticulatedRobot6DOF(Mechanism):
                 + error_5 * error_5
                 + error_6 * error_6
             )
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow) and (not beside_hand)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_d1 = z - d1
@@ -723,7 +723,7 @@ class ArticulatedRobot6DOF(Mechanism):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_arm or beside_elbow or beside_hand)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -832,7 +832,7 @@ class ArticulatedRobot6DOF(Mechanism):
             closed_axis_a6 = nearest_period(
                 offset_a6 + arctan2(closed_direction_y_q6 + 0.0, closed_direction_x_q6 + 0.0) * RADIAN, closed_near_a6
             )
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -878,9 +878,9 @@ class ArticulatedRobot6DOF(Mechanism):
                 if another or from_the_met_pose
                 else (tried_a6 if mirrors else tried_a6 + shared_quotient * step_a6)
             )
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn

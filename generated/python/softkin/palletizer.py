@@ -323,9 +323,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             tried_a2,
             tried_a3,
             tried_a4,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -373,9 +373,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
             error_3 = (goal_z - z) * one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
@@ -428,7 +428,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -542,7 +542,7 @@ class Palletizer(OffsetKinematics, TwistChoice):
             closed_axis_a3 = nearest_period(
                 offset_a3 + (closed_angle_a2 + closed_angle_a3_from_a2) * RADIAN, closed_near_a3
             )
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -566,9 +566,9 @@ class Palletizer(OffsetKinematics, TwistChoice):
                 else (tried_a3 if mirrors else tried_a3 + shared_quotient * step_a3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn

@@ -122,7 +122,7 @@ class Palletizer5(Mechanism):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_Palletizer5"
-    KEY = "palletizer5 f8a6ab6d62e5574b"
+    KEY = "palletizer5 17489758afc6a96c"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Column about Z", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Rear arm: zero upright, positive forward", multi_turn=True),
@@ -424,9 +424,9 @@ class Palletizer5(Mechanism):
             tried_a3,
             tried_a4,
             tried_a5,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -496,9 +496,9 @@ class Palletizer5(Mechanism):
             error = sqrt(
                 error_1 * error_1 + error_2 * error_2 + error_3 * error_3 + error_4 * error_4 + error_5 * error_5
             ) + (0.0 if goal_r33 * cos_a5 + goal_r13 * r13_at_a5 + goal_r23 * r23_at_a5 > 0.0 else 1.0)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             pose_is_met = pose_is_close and (not beside_elbow) and (not beside_shoulder) and (not beside_tilt)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_z_at_a2_a3 = z - z_at_a2_a3
@@ -610,7 +610,7 @@ class Palletizer5(Mechanism):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder or beside_tilt)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -693,7 +693,7 @@ class Palletizer5(Mechanism):
             closed_axis_a4 = nearest_period(
                 offset_a4 + arctan2(closed_direction_y_a4 + 0.0, closed_direction_x_a4 + 0.0) * RADIAN, closed_near_a4
             )
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -730,9 +730,9 @@ class Palletizer5(Mechanism):
                     else tried_a5 + shared_quotient * step_a5
                 )
             )
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn

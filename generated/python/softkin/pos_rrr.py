@@ -101,7 +101,7 @@ class PosRRR(OffsetKinematics):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Kin_Pos_RRR"
-    KEY = "pos_rrr 2e5ceaad35ab341d"
+    KEY = "pos_rrr b964679317f805ac"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Axis 1", multi_turn=True),
         Axis(name="A2", kind="rotary", unit="deg", meaning="Axis 2", multi_turn=True),
@@ -305,9 +305,9 @@ class PosRRR(OffsetKinematics):
             tried_a1,
             tried_a2,
             tried_a3,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -349,9 +349,9 @@ class PosRRR(OffsetKinematics):
             error_3 = (goal_z - z) * one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_d1 = z - d1
@@ -399,7 +399,7 @@ class PosRRR(OffsetKinematics):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -460,7 +460,7 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -487,9 +487,9 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn
@@ -610,9 +610,9 @@ class PosRRR(OffsetKinematics):
             tried_a1,
             tried_a2,
             tried_a3,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -657,9 +657,9 @@ class PosRRR(OffsetKinematics):
             error_3 = (goal_z - z) * one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             pose_is_met = pose_is_close and (not beside_arm) and (not beside_elbow)
             rate_1_1 = -one_by_machine_scale * y
             z_minus_d1 = z - d1
@@ -707,7 +707,7 @@ class PosRRR(OffsetKinematics):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_arm or beside_elbow)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -768,7 +768,7 @@ class PosRRR(OffsetKinematics):
             closed_axis_a2 = nearest_period(
                 offset_a2 + arctan2(closed_direction_y_q2 + 0.0, closed_direction_x_q2 + 0.0) * RADIAN, closed_near_a2
             )
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -795,9 +795,9 @@ class PosRRR(OffsetKinematics):
                     else tried_a3 + shared_quotient * step_a3
                 )
             )
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn

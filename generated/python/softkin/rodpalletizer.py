@@ -421,9 +421,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             tried_s2,
             tried_m3,
             tried_a4,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -499,9 +499,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             error_3 = (goal_z - z) * one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) or ((error <= 1e-11) and (another or (2.0 * error > least_error)))
             sum_in_pose_is_met = (
                 crank_base_z_times_crank_length_times_2 + crank_length_times_lever_length_times_2 * sin_c
             ) * cos_motor_m3 + (
@@ -570,7 +570,7 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             next_attempt = 115 if (least_error_left_now > 0.01) and (attempt == 62) else attempt + (1 if another else 0)
             scans = (next_attempt > 1) and (next_attempt < 115)
             mirrors = pose_is_close and (beside_elbow or beside_shoulder)
-            from_the_met_pose = mirrors and (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors and (stalls_left > 10)  # what is nearly free is known now
             free_angle = (
                 0.01
                 if from_the_met_pose
@@ -716,7 +716,7 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
             ) / closed_divisor_of_motor_m3
             closed_motor_m3 = arctan2(closed_sin_motor_m3 + 0.0, closed_cos_motor_m3 + 0.0)
             closed_axis_m3 = offset_m3 + closed_motor_m3 * RADIAN
-            passes_left_now = passes_left + (-1 if mirrors or (error > 0.99 * error_before) else 0)
+            stalls_left_now = stalls_left + (-1 if mirrors or (error > 0.99 * least_error) else 0)
             shared_quotient = shrinking * RADIAN
             if pose_is_met or (no_start_is_left and (not scans)) or (another and (next_attempt > 128)):
                 break
@@ -740,9 +740,9 @@ class RodPalletizer(OffsetKinematics, TwistChoice):
                 else (tried_m3 if mirrors else tried_m3 + shared_quotient * step_m3)
             )
             tried_a4 = given_ref_a4 if another or from_the_met_pose else tried_a4
-            passes_left = (0 if scans else 20) if another else passes_left_now
+            stalls_left = (0 if scans else 20) if another else stalls_left_now
             attempt = (115 if scans else 129) if no_start_is_left else next_attempt
-            error_before = 9.0 if another or mirrors else (error if error < error_before else error_before)
+            least_error = 9.0 if another or mirrors else (error if error < least_error else least_error)
             least_error_left = least_error_left_now
             nearest_turn = nearest_turn_now
             turn_of_attempt = free_turn

@@ -125,9 +125,9 @@ class ArrayPrograms(Programs):
             tried_a4,
             tried_a5,
             tried_a6,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -250,9 +250,9 @@ class ArrayPrograms(Programs):
                 + error_5 * error_5
                 + error_6 * error_6
             )
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > least_error)))
             pose_is_met = (
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_wrist))
             )
@@ -414,7 +414,7 @@ class ArrayPrograms(Programs):
             next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
             scans = (next_attempt > 1) & (next_attempt < 115)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_wrist)
-            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (stalls_left > 10)  # what is nearly free is known now
             free_angle = select(
                 from_the_met_pose,
                 0.01,
@@ -535,7 +535,7 @@ class ArrayPrograms(Programs):
                 k.offset_a5 + atan2(closed_q6_radius_of_q5, closed_cos_q5) / DEGREE, closed_near_a5
             )
             closed_axis_a6 = nearest_period(k.offset_a6 + atan2(closed_sin_q6, closed_cos_q6) / DEGREE, closed_near_a6)
-            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
+            stalls_left_now = stalls_left + select(mirrors | (error > 0.99 * least_error), -1, 0)
             shared_quotient = shrinking / DEGREE
             done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
@@ -547,9 +547,9 @@ class ArrayPrograms(Programs):
                 tried_a4,
                 tried_a5,
                 tried_a6,
-                passes_left,
+                stalls_left,
                 attempt,
-                error_before,
+                least_error,
                 least_error_left,
                 nearest_turn,
                 turn_of_attempt,
@@ -563,9 +563,9 @@ class ArrayPrograms(Programs):
                     tried_a4,
                     tried_a5,
                     tried_a6,
-                    passes_left,
+                    stalls_left,
                     attempt,
-                    error_before,
+                    least_error,
                     least_error_left,
                     nearest_turn,
                     turn_of_attempt,
@@ -614,9 +614,9 @@ class ArrayPrograms(Programs):
                             tried_a6 + shared_quotient * step_a6,
                         ),
                     ),
-                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(another, select(scans, 0, 20), stalls_left_now),
                     select(no_start_is_left, select(scans, 115, 129), next_attempt),
-                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
+                    select(another | mirrors, 9.0, select(error < least_error, error, least_error)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,

@@ -153,9 +153,9 @@ class ArrayPrograms(Programs):
             tried_a3,
             tried_a4,
             tried_a5,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -225,9 +225,9 @@ class ArrayPrograms(Programs):
             error = sqrt(
                 error_1 * error_1 + error_2 * error_2 + error_3 * error_3 + error_4 * error_4 + error_5 * error_5
             ) + select(goal_r33 * cos_a5 + goal_r13 * r13_at_a5 + goal_r23 * r23_at_a5 > 0.0, 0.0, 1.0)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > least_error)))
             pose_is_met = (
                 pose_is_close & (opposite(beside_elbow)) & (opposite(beside_shoulder)) & (opposite(beside_tilt))
             )
@@ -342,7 +342,7 @@ class ArrayPrograms(Programs):
             next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
             scans = (next_attempt > 1) & (next_attempt < 115)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder | beside_tilt)
-            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (stalls_left > 10)  # what is nearly free is known now
             free_angle = select(
                 from_the_met_pose,
                 0.01,
@@ -423,7 +423,7 @@ class ArrayPrograms(Programs):
             closed_axis_a4 = nearest_period(
                 k.offset_a4 + atan2(closed_direction_y_a4, closed_direction_x_a4) / DEGREE, closed_near_a4
             )
-            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
+            stalls_left_now = stalls_left + select(mirrors | (error > 0.99 * least_error), -1, 0)
             shared_quotient = shrinking / DEGREE
             done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
@@ -434,9 +434,9 @@ class ArrayPrograms(Programs):
                 tried_a3,
                 tried_a4,
                 tried_a5,
-                passes_left,
+                stalls_left,
                 attempt,
-                error_before,
+                least_error,
                 least_error_left,
                 nearest_turn,
                 turn_of_attempt,
@@ -449,9 +449,9 @@ class ArrayPrograms(Programs):
                     tried_a3,
                     tried_a4,
                     tried_a5,
-                    passes_left,
+                    stalls_left,
                     attempt,
-                    error_before,
+                    least_error,
                     least_error_left,
                     nearest_turn,
                     turn_of_attempt,
@@ -491,9 +491,9 @@ class ArrayPrograms(Programs):
                             tried_a5 + shared_quotient * step_a5,
                         ),
                     ),
-                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(another, select(scans, 0, 20), stalls_left_now),
                     select(no_start_is_left, select(scans, 115, 129), next_attempt),
-                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
+                    select(another | mirrors, 9.0, select(error < least_error, error, least_error)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,

@@ -112,9 +112,9 @@ class ArrayPrograms(Programs):
             tried_a1,
             tried_a2,
             tried_a3,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -156,9 +156,9 @@ class ArrayPrograms(Programs):
             error_3 = (goal_z - z) * k.one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > least_error)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             rate_1_1 = -k.one_by_machine_scale * y
             z_minus_d1 = z - k.d1
@@ -207,7 +207,7 @@ class ArrayPrograms(Programs):
             next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
             scans = (next_attempt > 1) & (next_attempt < 115)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (stalls_left > 10)  # what is nearly free is known now
             free_angle = select(
                 from_the_met_pose,
                 0.01,
@@ -266,7 +266,7 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
-            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
+            stalls_left_now = stalls_left + select(mirrors | (error > 0.99 * least_error), -1, 0)
             shared_quotient = shrinking / DEGREE
             done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
@@ -275,9 +275,9 @@ class ArrayPrograms(Programs):
                 tried_a1,
                 tried_a2,
                 tried_a3,
-                passes_left,
+                stalls_left,
                 attempt,
-                error_before,
+                least_error,
                 least_error_left,
                 nearest_turn,
                 turn_of_attempt,
@@ -288,9 +288,9 @@ class ArrayPrograms(Programs):
                     tried_a1,
                     tried_a2,
                     tried_a3,
-                    passes_left,
+                    stalls_left,
                     attempt,
-                    error_before,
+                    least_error,
                     least_error_left,
                     nearest_turn,
                     turn_of_attempt,
@@ -320,9 +320,9 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(another, select(scans, 0, 20), stalls_left_now),
                     select(no_start_is_left, select(scans, 115, 129), next_attempt),
-                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
+                    select(another | mirrors, 9.0, select(error < least_error, error, least_error)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
@@ -423,9 +423,9 @@ class ArrayPrograms(Programs):
             tried_a1,
             tried_a2,
             tried_a3,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -470,9 +470,9 @@ class ArrayPrograms(Programs):
             error_3 = (goal_z - z) * k.one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > least_error)))
             pose_is_met = pose_is_close & (opposite(beside_arm)) & (opposite(beside_elbow))
             rate_1_1 = -k.one_by_machine_scale * y
             z_minus_d1 = z - k.d1
@@ -521,7 +521,7 @@ class ArrayPrograms(Programs):
             next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
             scans = (next_attempt > 1) & (next_attempt < 115)
             mirrors = pose_is_close & (beside_arm | beside_elbow)
-            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (stalls_left > 10)  # what is nearly free is known now
             free_angle = select(
                 from_the_met_pose,
                 0.01,
@@ -580,7 +580,7 @@ class ArrayPrograms(Programs):
             closed_axis_a2 = nearest_period(
                 k.offset_a2 + atan2(closed_direction_y_q2, closed_direction_x_q2) / DEGREE, closed_near_a2
             )
-            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
+            stalls_left_now = stalls_left + select(mirrors | (error > 0.99 * least_error), -1, 0)
             shared_quotient = shrinking / DEGREE
             done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
@@ -589,9 +589,9 @@ class ArrayPrograms(Programs):
                 tried_a1,
                 tried_a2,
                 tried_a3,
-                passes_left,
+                stalls_left,
                 attempt,
-                error_before,
+                least_error,
                 least_error_left,
                 nearest_turn,
                 turn_of_attempt,
@@ -602,9 +602,9 @@ class ArrayPrograms(Programs):
                     tried_a1,
                     tried_a2,
                     tried_a3,
-                    passes_left,
+                    stalls_left,
                     attempt,
-                    error_before,
+                    least_error,
                     least_error_left,
                     nearest_turn,
                     turn_of_attempt,
@@ -634,9 +634,9 @@ class ArrayPrograms(Programs):
                             tried_a3 + shared_quotient * step_a3,
                         ),
                     ),
-                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(another, select(scans, 0, 20), stalls_left_now),
                     select(no_start_is_left, select(scans, 115, 129), next_attempt),
-                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
+                    select(another | mirrors, 9.0, select(error < least_error, error, least_error)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,

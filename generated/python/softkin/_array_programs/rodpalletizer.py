@@ -87,9 +87,9 @@ class ArrayPrograms(Programs):
             tried_s2,
             tried_m3,
             tried_a4,
-            passes_left,
+            stalls_left,
             attempt,
-            error_before,
+            least_error,
             least_error_left,
             nearest_turn,
             turn_of_attempt,
@@ -165,9 +165,9 @@ class ArrayPrograms(Programs):
             error_3 = (goal_z - z) * k.one_by_machine_scale
             # error of the pose, in characteristic lengths and radians
             error = sqrt(error_1 * error_1 + error_2 * error_2 + error_3 * error_3)
-            another = passes_left <= 0
+            another = stalls_left <= 0
             # the error is rounding, and steps make it no smaller
-            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > error_before)))
+            pose_is_close = (error <= 1e-12) | ((error <= 1e-11) & (another | (2.0 * error > least_error)))
             sum_in_pose_is_met = (
                 k.crank_base_z_times_crank_length_times_2 + k.crank_length_times_lever_length_times_2 * sin_c
             ) * cos_motor_m3 + (
@@ -237,7 +237,7 @@ class ArrayPrograms(Programs):
             next_attempt = select((least_error_left_now > 0.01) & (attempt == 62), 115, attempt + select(another, 1, 0))
             scans = (next_attempt > 1) & (next_attempt < 115)
             mirrors = pose_is_close & (beside_elbow | beside_shoulder)
-            from_the_met_pose = mirrors & (passes_left > 10)  # what is nearly free is known now
+            from_the_met_pose = mirrors & (stalls_left > 10)  # what is nearly free is known now
             free_angle = select(
                 from_the_met_pose,
                 0.01,
@@ -375,7 +375,7 @@ class ArrayPrograms(Programs):
             ) / closed_divisor_of_motor_m3
             closed_motor_m3 = atan2(closed_sin_motor_m3, closed_cos_motor_m3)
             closed_axis_m3 = k.offset_m3 + closed_motor_m3 / DEGREE
-            passes_left_now = passes_left + select(mirrors | (error > 0.99 * error_before), -1, 0)
+            stalls_left_now = stalls_left + select(mirrors | (error > 0.99 * least_error), -1, 0)
             shared_quotient = shrinking / DEGREE
             done = pose_is_met | (no_start_is_left & (opposite(scans))) | (another & (next_attempt > 128))
             if settled(done, status):
@@ -385,9 +385,9 @@ class ArrayPrograms(Programs):
                 tried_s2,
                 tried_m3,
                 tried_a4,
-                passes_left,
+                stalls_left,
                 attempt,
-                error_before,
+                least_error,
                 least_error_left,
                 nearest_turn,
                 turn_of_attempt,
@@ -399,9 +399,9 @@ class ArrayPrograms(Programs):
                     tried_s2,
                     tried_m3,
                     tried_a4,
-                    passes_left,
+                    stalls_left,
                     attempt,
-                    error_before,
+                    least_error,
                     least_error_left,
                     nearest_turn,
                     turn_of_attempt,
@@ -428,9 +428,9 @@ class ArrayPrograms(Programs):
                         select(mirrors, tried_m3, tried_m3 + shared_quotient * step_m3),
                     ),
                     select(another | from_the_met_pose, given_ref_a4, tried_a4),
-                    select(another, select(scans, 0, 20), passes_left_now),
+                    select(another, select(scans, 0, 20), stalls_left_now),
                     select(no_start_is_left, select(scans, 115, 129), next_attempt),
-                    select(another | mirrors, 9.0, select(error < error_before, error, error_before)),
+                    select(another | mirrors, 9.0, select(error < least_error, error, least_error)),
                     least_error_left_now,
                     nearest_turn_now,
                     free_turn,
