@@ -8,6 +8,7 @@ interpret: the reference interpreter, which executes a program over arrays
 one_row: a program as a function of Python's own numbers, for few rows
 passes: passes over programs: aliases folded, statements in the order of their use, constants hoisted
 primitives: the functions that every language implements, and their values on arrays
+python_text: expressions as text in Python, of plain numbers or of arrays, and functions made of such text
 program: programs, their statements and their statuses
 reason: why a program refuses: what is at fault, what is wrong with it, and how much is missing
 statement: what all kinds of statements have in common

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache, partial
+from itertools import groupby
 from math import prod
 from operator import itemgetter
 
@@ -15,9 +16,9 @@ from numpy.typing import NDArray
 
 from derive.ir.constants import DEGREE
 from derive.ir.one_row import Refused, Repeats, function_of
-from derive.ir.primitives import VALUES, solve
+from derive.ir.primitives import solve
 from derive.ir.program import Call, Iterate, Let, Program, Require, Solve, Statement, Status
-from derive.ir.symbols import Flag, is_count, is_decided
+from derive.ir.python_text import ARRAYS, Expressions, declared
 from derive.kept import kept_by_identity
 from derive.work import spend_steps
 
@@ -40,7 +41,7 @@ def repeats_counted() -> Iterator[Repeats]:
         _REPEATS.reset(token)
 
 
-_Evaluator = Callable[[Mapping[str, Array]], Array]
+_Evaluator = Callable[..., Array]
 
 
 def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
@@ -53,39 +54,26 @@ def _evaluator(expression: sp.Basic) -> _Evaluator:
     """The expression as a function of the values of its symbols; cached, because expressions are evaluated often."""
     if isinstance(expression, sp.Symbol) and expression != DEGREE:
         return itemgetter(expression.name)
-    if is_decided(expression):
-        return _constant(expression == sp.true)
-    if expression == DEGREE or isinstance(expression, sp.Number | sp.NumberSymbol):
-        return _constant(np.pi / 180.0 if expression == DEGREE else float(expression))
-    function, first, *others = VALUES[type(expression)], *map(_evaluator, expression.args)
-    if not others:
-        return lambda values: function(first(values))
-    if len(others) == 1:
-        return lambda values: function(first(values), others[0](values))
-    is_chain = isinstance(expression, sp.Add | sp.Mul | sp.And | sp.Or)
-    return _chained(function, first, others) if is_chain else _of_more(function, first, others)
+    return _compiled((), expression)
 
 
-def _chained(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
-    """An operation from left to right."""
-
-    def chained(values: Mapping[str, Array]) -> Array:
-        result = first(values)
-        for other in others:
-            result = function(result, other(values))
-        return result
-
-    return chained
-
-
-def _of_more(function: Callable[..., Array], first: _Evaluator, others: Sequence[_Evaluator]) -> _Evaluator:
-    return lambda values: function(first(values), *[other(values) for other in others])
+def _compiled(lets: Sequence[Let], result: sp.Basic = sp.S.Zero) -> _Evaluator:
+    """Assignments as a function that updates the known values, and gives a further one."""
+    writer = Expressions(ARRAYS, {"asarray": np.asarray})
+    lines, bound = ["def function(known, status=None):"], set[sp.Symbol]()
+    for let in lets:
+        lines += _read(writer, let.value.free_symbols - bound)
+        value = f"asarray({writer.text(let.value)}, {declared(let.name).__name__})"
+        lines += [*writer.before("    "), f"    known[{let.name.name!r}] = {writer.name(let.name)} = {value}"]
+        bound |= let.value.free_symbols | {let.name}
+    lines += _read(writer, result.free_symbols - bound)
+    value = f"asarray({writer.text(result)})"
+    return writer.executed([*lines, *writer.before("    "), f"    return {value}"], "<arrays>")
 
 
-def _constant(value: float | bool) -> Callable[[Mapping[str, Array]], Array]:
-    array = np.asarray(value)
-    array.setflags(write=False)
-    return lambda _: array
+def _read(writer: Expressions, names: Iterable[sp.Basic]) -> list[str]:
+    own = sorted((n for n in names if isinstance(n, sp.Symbol) and n != DEGREE), key=str)
+    return [f"    {writer.name(name)} = known[{name.name!r}]" for name in own]
 
 
 def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
@@ -148,17 +136,12 @@ def _broadcast(value: Array, shape: tuple[int, ...]) -> Array:
 
 def _as_declared(value: Array, name: sp.Symbol | None) -> Array:
     """The value of an input in the type of its name: a flag may be given as 0 or 1, an integer as a real number."""
-    return np.asarray(value, dtype=_declared(name))
-
-
-@cache
-def _declared(name: sp.Symbol | None) -> type:
-    return bool if isinstance(name, Flag) else np.int64 if is_count(name) else float
+    return np.asarray(value, dtype=declared(name))
 
 
 _State = dict[str, Array]
 _Statuses = NDArray[np.object_]
-_Step = Callable[[_State, _Statuses], None]
+_Step = Callable[[_State, _Statuses], object]
 
 
 def _execute(statements: Sequence[Statement], known: _State, status: _Statuses) -> None:
@@ -170,12 +153,14 @@ def _execute(statements: Sequence[Statement], known: _State, status: _Statuses) 
 @kept_by_identity(2000)
 def _steps(statements: Sequence[Statement]) -> list[_Step]:
     """Statements as functions that update the known values; cached, because programs run often."""
-    return [_step(s) for s in statements]
+    steps: list[_Step] = []
+    for is_let, some in groupby(statements, lambda s: isinstance(s, Let)):
+        own = list(some)
+        steps += [_compiled([s for s in own if isinstance(s, Let)])] if is_let else map(_step, own)
+    return steps
 
 
 def _step(statement: Statement) -> _Step:
-    if isinstance(statement, Let):
-        return _let(statement)
     if isinstance(statement, Require):
         condition, otherwise = _evaluator(statement.condition), statement.otherwise
         return lambda known, status: _require(condition(known), otherwise, status)
@@ -183,16 +168,8 @@ def _step(statement: Statement) -> _Step:
         return _system(statement)
     if isinstance(statement, Call):
         return partial(_call, statement)
+    assert isinstance(statement, Iterate)
     return _loop(statement)
-
-
-def _let(let: Let) -> _Step:
-    name, value, declared, convert = let.name.name, _evaluator(let.value), _declared(let.name), np.asarray
-
-    def bind(known: _State, _: _Statuses) -> None:
-        known[name] = convert(value(known), declared)
-
-    return bind
 
 
 def _require(condition: Array, otherwise: Status | None, status: NDArray[np.object_]) -> None:
@@ -212,7 +189,7 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     outputs, own = _outputs(call.program, inner, own)
     status[rows] = own if call.refusal is None else [s if s is Status.OK else call.refusal[0] for s in own]
     for name in call.names:
-        known[name.name] = np.zeros(status.shape, _declared(name))
+        known[name.name] = np.zeros(status.shape, declared(name))
         known[name.name][rows] = outputs[name.name] if own.size else 0.0
 
 
@@ -229,7 +206,7 @@ def _loop(loop: Iterate) -> _Step:
     """Run a loop: rows that are done keep their state and the names of the step, while the others go on."""
     is_done, names, step = _evaluator(loop.done), [name.name for name in loop.state], _step_of(loop)
     starts, followings = (
-        [(_evaluator(value), _declared(name)) for name, value in zip(loop.state, values, strict=True)]
+        [(_evaluator(value), declared(name)) for name, value in zip(loop.state, values, strict=True)]
         for values in (loop.start, loop.following)
     )
 
@@ -262,7 +239,7 @@ def _step_of(loop: Iterate) -> Callable[[_State, _Statuses, NDArray[np.bool_]], 
     def one_pass(known: _State, status: _Statuses, going: NDArray[np.bool_]) -> None:
         inner, own = {name: _broadcast(known[name], status.shape)[going] for name in read}, status[going]
         for name in bound:
-            known.setdefault(name.name, np.zeros(status.shape, _declared(name)))
+            known.setdefault(name.name, np.zeros(status.shape, declared(name)))
         if own.size:
             _execute(loop.step, inner, own)
             status[going] = own

@@ -1,5 +1,5 @@
-"""A program as a function of Python's own numbers: the reference interpreter for few rows. One row of a program that
-iterates took 7 times as long on arrays (a hexapod), and 36 times (an arm that is searched).
+"""A program as a function of Python's own numbers: the reference interpreter for few rows, of which each operation on
+arrays takes as long as on hundreds.
 
 It rounds as arrays do: all but sums, products, roots and comparisons is asked of the same functions. It shares nothing
 with the Python that is generated, which is measured against it.
@@ -10,30 +10,15 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import count
-from math import inf, nan, sqrt
+from math import sqrt
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
-from derive.ir.constants import DEGREE
-from derive.ir.primitives import VALUES, Root, Select, ToReal, solved
+from derive.ir.primitives import solved
 from derive.ir.program import Call, Iterate, Let, Output, Program, Require, Solve, Statement
-from derive.ir.symbols import Flag, is_count, is_decided
+from derive.ir.python_text import NUMBERS, Expressions, declared
 from derive.kept import kept_by_identity
-
-_BETWEEN = {
-    sp.Add: " + ", sp.Mul: " * ", sp.And: " and ", sp.Or: " or ", sp.Le: " <= ", sp.Lt: " < ", sp.Ge: " >= ",
-    sp.Gt: " > ", sp.Eq: " == ", sp.Ne: " != ",
-}  # fmt: skip
-_TEXTS = {
-    sp.Not: "(not {})", Select: "({1} if {0} else {2})", ToReal: "float({})", sp.Abs: "abs({})",
-    Root: "sqrt(max({}, 0.0))",
-}  # fmt: skip
-
-_DEEP = 50
-"""A value that is nested so deeply has a line of its own."""
 
 
 class Refused(Exception):
@@ -58,46 +43,25 @@ Function = Callable[..., tuple[Any, ...]]
 @kept_by_identity(500)
 def function_of(program: Program) -> Function:
     """Repeats, and the values of `program.inputs` → those of its outputs. Raises `Refused`."""
-    writer = _Writer(program)
+    writer = _Writer(NUMBERS, {"Refused": Refused, "sqrt": sqrt, "solved": solved})
     lines = [f"def function(repeats, {', '.join(map(writer.name, program.inputs))}):", *writer.block(program.body)]
     lines += writer.returned(program.outputs)
-    exec(compile("\n".join(lines), f"<{program.name}>", "exec"), writer.known)  # noqa: S102 (our own text, of no file)
-    return writer.known["function"]  # type: ignore[no-any-return]
+    return writer.executed(lines, f"<{program.name}>")
 
 
-class _Writer:
+class _Writer(Expressions):
     """The text of a program, and what it reads besides its inputs."""
-
-    def __init__(self, program: Program) -> None:
-        self.known: dict[str, Any] = {
-            "Refused": Refused, "sqrt": sqrt, "inf": inf, "nan": nan, "solved": solved
-        }  # fmt: skip
-        self._names: dict[str, str] = {}
-        self._free = count()
-        self._before: list[str] = []
-        """The lines of what is nested too deeply, to stand before the line that reads it."""
-
-    def name(self, symbol: sp.Symbol) -> str:
-        return self._names.setdefault(symbol.name, f"v{len(self._names)}")
-
-    def given(self, what: object) -> str:
-        """A name for an object that the text reads."""
-        word = f"given_{next(self._free)}"
-        self.known[word] = what
-        return word
 
     def block(self, statements: Sequence[Statement], indent: str = "    ") -> Iterator[str]:
         yield f"{indent}repeats.steps += {len(statements)}"
         for statement in statements:
             for line in self._lines(statement):
-                inner = indent + line[: len(line) - len(line.lstrip())]
-                yield from (inner + one for one in self._before)
-                self._before.clear()
+                yield from self.before(indent + line[: len(line) - len(line.lstrip())])
                 yield indent + line
 
     def returned(self, outputs: Sequence[Output]) -> Iterator[str]:
         values = "".join(self.text(o.value) + ", " for o in outputs)
-        yield from (f"    {one}" for one in self._before)
+        yield from self.before("    ")
         yield f"    return ({values})"
 
     def _lines(self, statement: Statement) -> Iterator[str]:
@@ -113,7 +77,7 @@ class _Writer:
             yield from self._repeated(statement)
 
     def _bound(self, name: sp.Symbol, value: sp.Basic) -> str:
-        return f"{self.name(name)} = {_DECLARED[isinstance(name, Flag), is_count(name)]}({self.text(value)})"
+        return f"{self.name(name)} = {declared(name).__name__}({self.text(value)})"
 
     def _solved(self, system: Solve) -> Iterator[str]:
         size, columns = system.size, system.columns
@@ -157,28 +121,3 @@ class _Writer:
         yield from (f"    {self.name(name)} = next_{k}" for k, (name, _) in enumerate(states))
         if loop.otherwise is not None:
             yield f"else: raise Refused({self.given(loop.otherwise)})"
-
-    def text(self, value: sp.Basic, depth: int = 0) -> str:
-        """An expression in Python, whose parser reads at most 200 brackets in each other."""
-        if depth == _DEEP:
-            word = f"deep_{next(self._free)}"
-            self._before.append(f"{word} = {self.text(value)}")
-            return word
-        if isinstance(value, sp.Symbol) and value != DEGREE:
-            return self.name(value)
-        if is_decided(value):
-            return str(value == sp.true)
-        if value == DEGREE or isinstance(value, sp.Number | sp.NumberSymbol):
-            return f"({np.pi / 180.0 if value == DEGREE else float(value)!r})"
-        kind, parts = type(value), [self.text(a, depth + 1) for a in value.args]
-        if kind in _BETWEEN:
-            return f"({_BETWEEN[kind].join(parts)})"
-        if kind in _TEXTS:
-            return _TEXTS[kind].format(*parts)
-        function = f"of_{kind.__name__.lower()}"
-        self.known[function] = VALUES[kind]
-        return f"float({function}({', '.join(parts)}))"
-
-
-_DECLARED = {(False, False): "float", (True, False): "bool", (False, True): "int"}
-"""By whether a name is a flag, and whether it is a count: a count is made of integers, so never of NaN."""
