@@ -11,6 +11,7 @@ from math import hypot, nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, cast
 
+from softkin._answer import answer, refusing
 from softkin._around import Around
 from softkin._configuration import AUTOMATIC, slots
 from softkin._constants import EXACT
@@ -153,11 +154,9 @@ class Mounted(Around):
         turn = product(base.rotation, product(rotation, tool.rotation))
         return plus(base.position, turned(base.rotation, place)), turn, margins
 
+    @refusing
     def _orientation(self, axes: Reals) -> Rotation | Status:
-        flange = self.bare._orientation(axes)
-        if isinstance(flange, Status):
-            return flange
-        return product(self.base.rotation, product(flange, self.tool.rotation))
+        return product(self.base.rotation, product(answer(self.bare._orientation(axes)), self.tool.rotation))
 
     def _seen_from_base(self, position: Vector, rotation: Rotation) -> tuple[Vector, Rotation]:
         """The position of the tool and the rotation of the flange, in the frame of the bare machine.
@@ -221,55 +220,38 @@ class Mounted(Around):
             return tuple(self._solution(slot, rotation) for slot in slots((AUTOMATIC,) * self.BRANCHES))
         return self.bare.inverse_all(self._flange(*self._seen_from_base(position, rotation)), near)
 
+    @refusing
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The rows of the tool's twist; the rows about axes of the wrist are those of the bare machine."""
-        own, rotation = self._twist(axes), self._orientation(axes)
-        bare = self.bare._jacobian(axes)
-        for part in (own, rotation, bare):
-            if isinstance(part, Status):
-                return part
-        assert not (isinstance(own, Status) or isinstance(rotation, Status) or isinstance(bare, Status))
-        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, zip(self.bare.JACOBIAN_ROWS, bare, strict=True))
+        own, rotation = answer(self._twist(axes)), answer(self._orientation(axes))
+        bare = zip(self.bare.JACOBIAN_ROWS, answer(self.bare._jacobian(axes)), strict=True)
+        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, bare)
 
+    @refusing
     def _twist(self, axes: Reals) -> Matrix | Status:
-        rows, flange = self.bare._twist(axes), self.bare._orientation(axes)
-        if isinstance(rows, Status):
-            return rows
-        if isinstance(flange, Status):
-            return flange
+        rows, flange = answer(self.bare._twist(axes)), answer(self.bare._orientation(axes))
         arm, base = turned(flange, self.tool.position), self.base.rotation
         columns = [moved(column, arm) for column in zip(*rows, strict=True)]
         columns = [(*turned(base, c[:3]), *turned(base, c[3:])) for c in columns]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
 
+    @refusing
     def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
         """As `_jacobian`: the axes of the tool turn with it, so that they change no turn about them."""
-        own, rotation = self._twist_bias(axes, speeds), self._orientation(axes)
-        bare = self.bare._bias(axes, speeds)
-        if isinstance(own, Status):
-            return own
-        if isinstance(rotation, Status):
-            return rotation
-        if isinstance(bare, Status):
-            return bare
-        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, zip(self.bare.JACOBIAN_ROWS, bare, strict=True))
+        own, rotation = answer(self._twist_bias(axes, speeds)), answer(self._orientation(axes))
+        bare = zip(self.bare.JACOBIAN_ROWS, answer(self.bare._bias(axes, speeds)), strict=True)
+        return rows_by_name(self.JACOBIAN_ROWS, own, rotation, bare)
 
+    @refusing
     def _twist_bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
-        rows, flange, own = self.bare._twist(axes), self.bare._orientation(axes), self.bare._twist_bias(axes, speeds)
-        if isinstance(rows, Status):
-            return rows
-        if isinstance(flange, Status):
-            return flange
-        if isinstance(own, Status):
-            return own
+        rows, flange = answer(self.bare._twist(axes)), answer(self.bare._orientation(axes))
         arm = turned(flange, self.tool.position)
-        return turned_twist(self.base.rotation, at_end(own, rates(rows[3:], speeds), arm))
+        moving = at_end(answer(self.bare._twist_bias(axes, speeds)), rates(rows[3:], speeds), arm)
+        return turned_twist(self.base.rotation, moving)
 
+    @refusing
     def _image(self) -> Image | Status:
-        image = self.bare._image()
-        if isinstance(image, Status):
-            return image
-        rotation, base_axis, flange_axis = image
+        rotation, base_axis, flange_axis = answer(self.bare._image())
         total = product(self.base.rotation, product(rotation, self.tool.rotation))
         return total, turned(self.base.rotation, base_axis), turned(transposed(self.tool.rotation), flange_axis)
 

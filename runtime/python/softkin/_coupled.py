@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self, TypeAlias, TypeVar
 
+from softkin._answer import answer, refusing
 from softkin._configuration import Criterion
 from softkin._constants import TIE
 from softkin._core import SEVERAL_AXES, TURN, TWIST, EveryPose, Image, Mechanism, Pose
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 _Choice: TypeAlias = tuple[Signs, Turns, Reals]
 """Signs of the branches, turns and reference of one part."""
 _Named = TypeVar("_Named", Axis, ConfigurationByte)
+_Found = TypeVar("_Found")
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
 
 
@@ -197,85 +199,53 @@ class Coupled(Mechanism):
         carrier_bytes = first._written(margins[:cut], axes[: self._count])
         return carrier_bytes + second._written(margins[cut:], axes[self._count :])
 
+    @refusing
     def _forward(self, axes: Reals) -> Pose | Status:
-        carrier = self.position_part._forward(axes[: self._count])
-        if isinstance(carrier, Status):
-            return carrier
-        own = self.orientation_part._forward(axes[self._count :])
-        if isinstance(own, Status):
-            return own
-        return _on(carrier, own)
+        carrier = answer(self.position_part._forward(axes[: self._count]))
+        return _on(carrier, answer(self.orientation_part._forward(axes[self._count :])))
 
     def _every_pose(self, axes: Reals) -> EveryPose:
         carriers = self.position_part._every_pose(axes[: self._count])
         every = self.orientation_part._every_pose(axes[self._count :])
         return tuple((_on(carrier, own), one or other) for carrier, one in carriers for own, other in every)
 
+    @refusing
     def _orientation(self, axes: Reals) -> Rotation | Status:
-        flange = self.position_part._orientation(axes[: self._count])
-        if isinstance(flange, Status):
-            return flange
-        own = self.orientation_part._orientation(axes[self._count :])
-        return own if isinstance(own, Status) else product(flange, own)
+        flange = answer(self.position_part._orientation(axes[: self._count]))
+        return product(flange, answer(self.orientation_part._orientation(axes[self._count :])))
 
+    @refusing
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Signs, turns: Turns, reference: Reals
     ) -> Reals | Diagnosis:
         """The axes of both parts: those that reach the position, and those that orient the tool on the flange."""
-        solve = self._position_first if self._flange is None else self._orientation_first
-        axes = solve(position, rotation, *self._split(signs, turns, reference))
-        return (
-            Diagnosis(axes, f"{self.orientation_part.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
-        )
+        first, second = self.position_part, self.orientation_part
+        carrier, wrist = self._split(signs, turns, reference)
+        if self._flange is not None:  # it keeps its orientation: first the orientation axes, then the position axes
+            own = self._of(second, second._branch(_ORIGIN, seen_from(self._flange, rotation), *wrist))
+            shift = turned(self._flange, self._of(second, second._forward(own))[0])
+            return self._of(first, first._branch(plus(position, shift, -1.0), rotation, *carrier)) + own
+        if self._tool is not None:  # the commanded rotation determines how the position axes turn the flange
+            wanted = product(rotation, transposed(self._tool[1]))
+            flange = first._nearest_flange(wanted)
+            shift = _ORIGIN if isinstance(flange, Status) else turned(flange, self._tool[0])  # refused below
+            return self._of(first, first._branch(plus(position, shift, -1.0), wanted, *carrier))
+        shift = self._of(second, second._end_point_shift(rotation, *self._axis))
+        axes = self._of(first, first._branch(plus(position, shift, -1.0), rotation, *carrier))
+        flange = self._of(second, first._orientation(axes))
+        return axes + self._of(second, second._branch(_ORIGIN, seen_from(flange, rotation), *wrist))
+
+    def _of(self, part: Mechanism, found: _Found | Diagnosis | Status) -> _Found:
+        """What a part answers; a reason has the name of the part that refuses."""
+        if isinstance(found, Status):
+            return answer(Diagnosis(found, f"{self.orientation_part.NAME}: its end point", 0.0))
+        return answer(_named(part, found) if isinstance(found, Diagnosis) else found)
 
     def _split(self, signs: Signs, turns: Turns, reference: Reals) -> tuple[_Choice, _Choice]:
         """The signs, the turns and the reference of each part."""
         first, cut = self.position_part, len(self.position_part.PERIOD_AXES)
         carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]
         return carrier, (signs[first.BRANCHES :], turns[cut:], reference[self._count :])
-
-    def _orientation_first(
-        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
-    ) -> Reals | Diagnosis | Status:
-        """The axes where the flange keeps its orientation: first the orientation axes, then the position axes."""
-        flange = self._flange
-        assert flange is not None
-        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
-        if isinstance(own, Diagnosis):
-            return _of(self.orientation_part, own)
-        end = self.orientation_part._forward(own)
-        if isinstance(end, Status):
-            return end
-        axes = self.position_part._branch(plus(position, turned(flange, end[0]), -1.0), rotation, *carrier)
-        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes + own
-
-    def _position_first(
-        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
-    ) -> Reals | Diagnosis | Status:
-        """The axes where the position axes turn the flange: in an allowed pair the position axes are solved first."""
-        if self._tool is not None:
-            return self._with_tool(position, rotation, carrier, *self._tool)
-        shift = self.orientation_part._end_point_shift(rotation, *self._axis)
-        if isinstance(shift, Status):
-            return shift
-        axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
-        if isinstance(axes, Diagnosis):
-            return _of(self.position_part, axes)
-        flange = self.position_part._orientation(axes)
-        if isinstance(flange, Status):
-            return flange
-        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
-        return _of(self.orientation_part, own) if isinstance(own, Diagnosis) else axes + own
-
-    def _with_tool(
-        self, position: Vector, rotation: Rotation, carrier: _Choice, end: Vector, turn: Rotation
-    ) -> Reals | Diagnosis:
-        """The axes of the position part where the commanded rotation determines how they turn the flange."""
-        wanted = product(rotation, transposed(turn))
-        flange = self.position_part._nearest_flange(wanted)
-        shift = _ORIGIN if isinstance(flange, Status) else turned(flange, end)  # refused below, with the reason
-        axes = self.position_part._branch(plus(position, shift, -1.0), wanted, *carrier)
-        return _of(self.position_part, axes) if isinstance(axes, Diagnosis) else axes
 
     def _follows(self) -> str:
         """The orientation part follows the rotation; without axes it is a tool on the flange of the position part."""
@@ -285,22 +255,21 @@ class Coupled(Mechanism):
         follows = orientation._follows()
         return SEVERAL_AXES if follows == TURN and self.FREEDOM == "three" else follows
 
+    @refusing
     def _nearest_flange(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation of the tool, where the commanded rotation determines the turn of the flange."""
         if self._tool is not None:
             _, turn = self._tool
-            flange = self.position_part._nearest_flange(product(rotation, transposed(turn)))
-            return flange if isinstance(flange, Status) else product(flange, turn)
+            return product(answer(self.position_part._nearest_flange(product(rotation, transposed(turn)))), turn)
         at_zero = self.position_part.orientation_image().rotation
-        own = self.orientation_part._nearest_flange(seen_from(at_zero, rotation))
-        return own if isinstance(own, Status) else product(at_zero, own)
+        return product(at_zero, answer(self.orientation_part._nearest_flange(seen_from(at_zero, rotation))))
 
     def _limits(self, axes: Reals) -> Diagnosis | None:
         parts = (self.position_part, axes[: self._count]), (self.orientation_part, axes[self._count :])
         for part, own in parts:
             refused = part._beyond_limits(own)
             if refused is not None:
-                return _of(part, refused)
+                return _named(part, refused)
         return None
 
     def _parameter_units(self) -> dict[str, str]:
@@ -312,53 +281,39 @@ class Coupled(Mechanism):
         cut, count = self._count, len(self.orientation_part.AXES)
         return first[:cut] + second[:count] + first[cut:] + second[count:]
 
+    @refusing
     def _quantities(self, axes: Reals) -> Reals | Status:
-        first, second = (
-            self.position_part._quantities(axes[: self._count]),
-            self.orientation_part._quantities(axes[self._count :]),
-        )
-        if isinstance(first, Status):
-            return first
-        return second if isinstance(second, Status) else first + second
+        first = answer(self.position_part._quantities(axes[: self._count]))
+        return first + answer(self.orientation_part._quantities(axes[self._count :]))
 
     def _has_one_solution_a_branch(self) -> bool:
         return self.position_part._has_one_solution_a_branch() and self.orientation_part._has_one_solution_a_branch()
 
+    @refusing
     def _singularity(self, axes: Reals) -> Reals | Status:
-        carrier = self.position_part._singularity(axes[: self._count])
-        if isinstance(carrier, Status):
-            return carrier
-        own = self.orientation_part._singularity(axes[self._count :])
-        return own if isinstance(own, Status) else carrier + own
+        carrier = answer(self.position_part._singularity(axes[: self._count]))
+        return carrier + answer(self.orientation_part._singularity(axes[self._count :]))
 
+    @refusing
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian: the flange moves the end point as a rigid body, and the orientation axes move it relatively."""
         first, second = axes[: self._count], axes[self._count :]
-        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
-        flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
-        for part in (carrier, own, flange, end):
-            if isinstance(part, Status):
-                return part
-        assert not (isinstance(carrier, Status) or isinstance(own, Status))
-        assert not (isinstance(flange, Status) or isinstance(end, Status))
+        carrier, own = answer(self.position_part._twist(first)), answer(self.orientation_part._twist(second))
+        flange, end = answer(self.position_part._orientation(first)), answer(self.orientation_part._forward(second))
         arm = turned(flange, end[0])
         columns = [moved(column, arm) for column in zip(*carrier, strict=True)]
         columns += [(*turned(flange, c[:3]), *turned(flange, c[3:])) for c in zip(*own, strict=True)]
         return tuple(zip(*columns, strict=True)) if columns else ((),) * len(TWIST)
 
+    @refusing
     def _bias(self, axes: Reals, speeds: Reals) -> Reals | Status:
         """The acceleration of the end point at constant speeds of the axes: that of the flange, and that on it."""
         first, second = axes[: self._count], axes[self._count :]
         own_speeds = speeds[self._count :]
-        carrier, own = self.position_part._twist(first), self.orientation_part._twist(second)
-        flange, end = self.position_part._orientation(first), self.orientation_part._forward(second)
-        carried = self.position_part._twist_bias(first, speeds[: self._count])
-        inner = self.orientation_part._twist_bias(second, own_speeds)
-        for part in (carrier, own, flange, end, carried, inner):
-            if isinstance(part, Status):
-                return part
-        assert not (isinstance(carrier, Status) or isinstance(own, Status) or isinstance(carried, Status))
-        assert not (isinstance(flange, Status) or isinstance(end, Status) or isinstance(inner, Status))
+        carrier, own = answer(self.position_part._twist(first)), answer(self.orientation_part._twist(second))
+        flange, end = answer(self.position_part._orientation(first)), answer(self.orientation_part._forward(second))
+        carried = answer(self.position_part._twist_bias(first, speeds[: self._count]))
+        inner = answer(self.orientation_part._twist_bias(second, own_speeds))
         return on_flange(carried, rates(carrier[3:], speeds[: self._count]), flange, end[0], (own, own_speeds, inner))
 
     def _image(self) -> Image | Status:
@@ -418,7 +373,7 @@ def _on(carrier: Pose, own: Pose) -> Pose:
     return plus(position, turned(flange, own[0])), product(flange, own[1]), margins + own[2]
 
 
-def _of(part: Mechanism, refused: Diagnosis) -> Diagnosis:
+def _named(part: Mechanism, refused: Diagnosis) -> Diagnosis:
     """The reason with the name of the part that refuses."""
     return refused._replace(reason=f"{part.NAME}: {refused.reason}")
 
