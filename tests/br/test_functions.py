@@ -24,8 +24,8 @@ from tests.outside import output_of, temporary, written
 pytestmark = pytest.mark.broad
 
 NAMES = [m.name for _, m in catalogue() if commands_all_axes(m) and m.name in DIMENSIONS]
-FLAGS = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fPIC", "-shared")
-STUB = Path(__file__).parent / "stub"
+GCC = ("gcc", "-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fPIC",
+       "-isystem", str(Path(__file__).parent / "stub"))  # fmt: skip
 SINGULAR, LENGTH = 0.02, 15
 DIRECT, INVERSE, DIRECT_DERIVATIVE, INVERSE_DERIVATIVE = range(4)
 _Fifteen, _Three = ctypes.c_double * LENGTH, ctypes.c_double * 3
@@ -33,18 +33,24 @@ _Fifteen, _Three = ctypes.c_double * LENGTH, ctypes.c_double * 3
 
 @cache
 def library(name: str) -> ctypes.CDLL:
-    """The functions of a machine: compiled without a warning; the driver, which is no part of them, for this system."""
+    """The functions of a machine, compiled without a warning; so is the driver, which is no part of them."""
     part = br.part(kinematics_of(named(name)))
     assert part is not None
     folder = written(br.files([part]), temporary("br"))
     module = module_name(name)
-    sources = [folder / file for file in (f"{module}_br.c", f"{module}.c", "softkin_br.c", "softkin.c")]
+    sources = [folder / file for file in (f"{module}_br.c", f"{module}.c")]
     driver = [f'-DMACHINE_HEADER="{module}_br.h"', f"-DMACHINE={module}", Path(__file__).parent / "driver.c"]
     driver += ["-DWIRE_FRAME"] if "_br_wire_frame" in part["files"][f"{module}_br.h"] else []
-    places = ["-I", folder, "-isystem", STUB]
-    output_of(["gcc", *FLAGS, "-c", "-o", "/dev/null", *places, sources[2]])
-    output_of(["gcc", FLAGS[0], *FLAGS[-3:], *places, "-o", folder / "br.so", *driver, *sources, "-lm"])
+    output_of([*GCC, "-I", folder, "-shared", "-o", folder / "br.so", *driver, *sources, *shared(), "-lm"])
     return ctypes.CDLL(str(folder / "br.so"))
+
+
+@cache
+def shared() -> list[Path]:
+    """The compiled sources that all machines share."""
+    folder = written(br.files([]), temporary("br"))
+    output_of([*GCC, "-O2", "-c", "softkin_br.c", "softkin.c"], cwd=folder)
+    return [folder / "softkin_br.o", folder / "softkin.o"]
 
 
 class Machine:

@@ -3,7 +3,7 @@
 import os
 
 IS_NATIVE = os.environ["SOFTKIN_CORE"] == "native"
-MOST, MOST_SEARCHED = (4000, 4000) if IS_NATIVE else (600, 200)
+MOST, MOST_SEARCHED = (4000, 4000) if IS_NATIVE else (400, 100)
 STEPS = (1, 3, 5, 7, 13, 23, 47, 97)
 """Primes, so that a share has every joint at each of four right angles, and every way from a corner."""
 

@@ -20,7 +20,7 @@ from tests.mechanisms import kinematics_of, named
 from tests.orthonormal import about
 
 NAMES = [name for name in DIMENSIONS if name != "Kin_Tool"]
-REGULAR, MOST_POSES = 12, 40
+REGULAR, MOST_POSES = 12, 24
 """How many recorded poses are taken of those at the begin, which are regular, and about how many of the others."""
 Axes = list[float]
 Array = np.ndarray[Any, np.dtype[np.float64]]

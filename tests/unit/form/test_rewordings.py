@@ -36,7 +36,7 @@ pytestmark = pytest.mark.slow
 MACHINES = {**CHAINS, **{m.name: m for _, m in catalogue() if m.chain is not None}}
 WORDINGS = 2
 WAYS: tuple[Callable[[Mechanism, int], Chain], ...] = (reworded, in_link_frames, by_table)
-DERIVED = ("six axes by a table with angles as numbers", "SCARA that is turned where it stands")
+DERIVED = ("five axes with a tool beside the last one", "SCARA that is turned where it stands")
 
 
 def other(mechanism: Mechanism, number: int) -> Mechanism:
