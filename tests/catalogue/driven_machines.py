@@ -20,7 +20,7 @@ from tests.mechanisms import catalogue
 DRIVEN = tuple(m for _, m in catalogue() if m.drives)
 STEADY = 0.15
 """The derivatives of loops at a regular pose are at least this part of their largest values."""
-GRID = 181
+GRID = 61
 """Values at which a root of a loop is looked for."""
 
 
