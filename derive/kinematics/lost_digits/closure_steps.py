@@ -177,7 +177,7 @@ def on_its_turn(machine: Machine, joint: Joint, branch: Program) -> sp.Expr:
     start = real(f"open_{joint.key}")
     at_reference = {joint.reference: told.value(joint.reference)}
     own = lets[near].xreplace({start: lets[start].xreplace(at_reference)}) if start in lets else near
-    return NearestPeriod(told.gain * value, told.gain * own) / told.gain
+    return NearestPeriod(tried(joint) + told.shift, told.gain * own) / told.gain
 
 
 def _moves_others(mechanism: Mechanism, joint: Joint) -> bool:
@@ -188,8 +188,10 @@ def _moves_others(mechanism: Mechanism, joint: Joint) -> bool:
     return any({joint.motor, joint.symbol} & value.free_symbols for value in (*shifts, *gears))
 
 
-def at_step(machine: Machine) -> list[Statement]:
-    """The pose, the margins of the branches and the Jacobian at the axis values of a step."""
+def at_step(machine: Machine, scale: sp.Expr = SCALE) -> list[Statement]:
+    """The pose, the margins of the branches and the Jacobian at the axis values of a step. scale: the unit of lengths
+    in the Jacobian.
+    """
     mechanism = machine.mechanism
     lets, entries = machine.entries or jacobian_entries(mechanism)  # x, y and z are those of a commanded point
     found: dict[sp.Symbol, Let] = {}
@@ -200,7 +202,7 @@ def at_step(machine: Machine) -> list[Statement]:
     for r, row in enumerate(machine.rows):
         for k, j in enumerate(mechanism.joints):
             power = int(not j.axis_is_angle) - int(row in COORDINATE_NAMES)
-            value = entries[r * width + k] * SCALE**power if j in machine.inverse.moving else _ZERO
+            value = entries[r * width + k] * scale**power if j in machine.inverse.moving else _ZERO
             name = rate(r, k)
             found[name] = Let(name, value)
     axes = {j.axis: tried(j) for j in mechanism.joints}
@@ -213,21 +215,18 @@ def rate(row: int, column: int) -> sp.Symbol:
 
 def error_at_step(machine: Machine) -> list[Statement]:
     """The error of the pose in the rows of the Jacobian, and its size; one more where the rotations are opposite."""
+    errors, agreement = missed(machine, SCALE)
+    size = Root(sp.Add(*[e.name**2 for e in errors])) + Select(sp.Gt(agreement, 0), _ZERO, _ONE)
+    return [*errors, Let(real("error"), size, "error of the pose, in characteristic lengths and radians")]
+
+
+def missed(machine: Machine, scale: sp.Expr) -> tuple[list[Let], sp.Expr]:
+    """The error of the pose in the rows of the Jacobian, and what is positive unless the rotations are opposite."""
     goal = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES])
-    here = sp.Matrix(3, 3, ROTATION_ENTRIES)
-    shift = {c: (GOAL[real(c)] - real(c)) / SCALE for c in COORDINATE_NAMES}
-    turn, agreement = _turn(machine.turning, here, goal)
+    shift = {c: (GOAL[real(c)] - real(c)) / scale for c in COORDINATE_NAMES}
+    turn, agreement = _turn(machine.turning, sp.Matrix(3, 3, ROTATION_ENTRIES), goal)
     values = shift | turn
-    names = [real(f"error_{k}") for k, _ in enumerate(machine.rows, 1)]
-    opposite = Select(sp.Gt(agreement, 0), _ZERO, _ONE)
-    return [
-        *(Let(n, values[row]) for n, row in zip(names, machine.rows, strict=True)),
-        Let(
-            real("error"),
-            Root(sp.Add(*[n**2 for n in names])) + opposite,
-            "error of the pose, in characteristic lengths and radians",
-        ),
-    ]
+    return [Let(real(f"error_{k}"), values[row]) for k, row in enumerate(machine.rows, 1)], agreement
 
 
 def _turn(turning: Turning, here: sp.Matrix, goal: sp.Matrix) -> tuple[dict[str, sp.Expr], sp.Expr]:

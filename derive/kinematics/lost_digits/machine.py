@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -23,9 +23,14 @@ _ROTATED = (Turning.NONE, Turning.ABOUT_Z, Turning.DIRECTION, Turning.FULL)
 class Commanded:
     """What an axis tells of the value that it has."""
 
-    value: Callable[[sp.Expr], sp.Expr]
+    shift: sp.Expr
+    """What is added to the axis value that it has."""
     gain: sp.Expr
-    """What the axis value is multiplied by."""
+    """What the sum is divided by."""
+
+    def value(self, has: sp.Expr) -> sp.Expr:
+        """What it tells."""
+        return (has + self.shift) / self.gain
 
 
 @dataclass(frozen=True)

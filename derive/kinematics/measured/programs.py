@@ -27,7 +27,7 @@ from derive.kinematics.lost_digits.doubts import Doubt, meeting
 from derive.kinematics.lost_digits.machine import Commanded, Machine
 from derive.kinematics.lost_digits.starts import DRAWN
 from derive.kinematics.measured.approach import approached
-from derive.kinematics.measured.pose import true_pose
+from derive.kinematics.measured.pose import inner_pose, true_pose
 
 DEVIATES = flag("has_deviations")
 _LENGTHS, _ANGLES = real("size_of_shifts"), real("size_of_turns")
@@ -86,10 +86,10 @@ class Measured:
 
     @property
     def lean(self) -> Machine:
-        """The machine with its true pose and Jacobian alone."""
-        values = (*self.pose.position, *self.pose.rotation)
-        at_axes = (*joint_lets(self.mechanism), *self.pose.statements, *map(Let, _POSE, values))
-        entries = chain_entries(self.mechanism, self.machine.rows, self.pose.screws)
+        """The machine with the pose and the Jacobian that steps take."""
+        pose = inner_pose(self.mechanism).pose
+        at_axes = (*joint_lets(self.mechanism), *pose.statements, *map(Let, _POSE, (*pose.position, *pose.rotation)))
+        entries = chain_entries(self.mechanism, self.machine.rows, pose.screws)
         return replace(self.machine, at_axes=at_axes, entries=entries, assignments=())
 
     def actual(self, joint: Joint, told: sp.Symbol) -> Let:
@@ -100,7 +100,7 @@ class Measured:
     def commanded(self, joint: Joint) -> Commanded:
         """What an axis tells, by the value that it has."""
         gain, offset = self.off(joint, "gain"), self.off(joint, "offset")
-        return Commanded(lambda v: v - (offset + gain * (v - joint.offset)) / (1 + gain), 1 + gain)
+        return Commanded(gain * joint.offset - offset, 1 + gain)
 
     def at_actual(self, program: Program) -> Program:
         """A program of values that axes have, as one of those that they tell; so for the reference."""
@@ -131,7 +131,8 @@ class Measured:
             deviates=DEVIATES,
         )
         branch = normalise(drawn.name, (*self.settled, *late, met), drawn.outputs)
-        return meeting(machine, branch, self.doubts, lambda search: approached(machine, self.lean, branch, search))
+        lean, inner = self.lean, inner_pose(self.mechanism)
+        return meeting(machine, branch, self.doubts, lambda search: approached(machine, lean, inner, branch, search))
 
 
 def measured_programs(measured: Measured, drawn: Sequence[Program]) -> list[Program]:

@@ -192,8 +192,8 @@ class Meeting:
         start = self._start(target, signs, turns, reference)
         if isinstance(start, Diagnosis):
             return start
-        least = self._stepped(self._at(start, target), target)
         moved, at = target, self._at(start, target)
+        least = self._stepped(at, target)
         if least.size > BEYOND_ALL * self.off:
             return self._refused(least, target)
         for _ in range(ROUNDS):
