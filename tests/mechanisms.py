@@ -4,7 +4,7 @@ from functools import cache
 
 from derive.description import catalogue as description
 from derive.description.catalogue import Entry
-from derive.description.mechanism import Mechanism
+from derive.description.mechanism import Mechanism, Turning
 from derive.kinematics.build import build
 from derive.kinematics.kinematics import Kinematics
 from tests.kept import kept
@@ -25,6 +25,11 @@ def has_struts(mechanism: Mechanism) -> bool:
     """Whether the lengths of its rods are joints: any place is in reach."""
     lengths = {s for rod in mechanism.rods for s in rod.length.free_symbols}
     return bool(lengths & {j.symbol for j in mechanism.joints})
+
+
+def has_free_twist(mechanism: Mechanism) -> bool:
+    """Whether a loop holds the direction of its platform, but no turn about it."""
+    return mechanism.is_platform and mechanism.task.turning is Turning.DIRECTION and not mechanism.fixed_guides
 
 
 def limit_names(mechanism: Mechanism) -> set[str]:

@@ -86,7 +86,7 @@ class Plane:
 
 FREE_TWIST = Plane("free_twist", tuple(ROTATION[:, 1]), tuple(ROTATION[:, 0]), sp.Integer(0))
 """The twist of a platform whose legs do not feel it: the x axis of the plate is always at right angles to its y axis.
-Its row in the matrix of the legs is a turn about the z axis of the plate."""
+This holds nothing: forward kinematics gives the platform the twist of the least turn from its home orientation."""
 
 
 @dataclass(frozen=True)

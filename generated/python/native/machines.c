@@ -44,6 +44,7 @@
 #include "palletizer.h"
 #include "palletizer5.h"
 #include "pcc.h"
+#include "pentapod.h"
 #include "planar_3rrr.h"
 #include "polar.h"
 #include "polar_z.h"
@@ -242,6 +243,7 @@ const softkin_native softkin_machines[] = {
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
     {"palletizer5 17489758afc6a96c", &palletizer5_mechanism, {palletizer5_regular, palletizer5_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
+    {"pentapod 0d86fc990a80c13a", &pentapod_mechanism, {NULL, NULL}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},

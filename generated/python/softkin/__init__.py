@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from softkin.palletizer import Palletizer
     from softkin.palletizer5 import Palletizer5
     from softkin.pcc import PCC
+    from softkin.pentapod import Pentapod
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
@@ -166,6 +167,7 @@ __all__ = [
     "Palletizer",
     "Palletizer5",
     "Parameter",
+    "Pentapod",
     "Planar3RRR",
     "Polar",
     "PolarZ",
@@ -254,6 +256,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Softkin_Palletizer5": ("palletizer5", "Palletizer5"),
     "Kin_PCC": ("pcc", "PCC"),
+    "Softkin_Pentapod": ("pentapod", "Pentapod"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),

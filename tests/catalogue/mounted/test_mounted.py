@@ -107,7 +107,7 @@ def test_the_documented_cases() -> None:
             sample_of(mechanism).robot.with_tool(ASIDE)
         except KinematicsError:
             found.add(mechanism.name)
-    assert found == undetermined | directions and len(directions) == 14
+    assert found == undetermined | directions and len(directions) == 15
 
 
 @EVERY_MECHANISM
