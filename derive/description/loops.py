@@ -140,16 +140,6 @@ def ring_rod(name: str, base: Sequence[object], centre: Sequence[object], radius
     return replace(rod(name, base, centre, length), ring=sp.sympify(radius))
 
 
-def surplus_notes(names: Sequence[str]) -> tuple[str, ...]:
-    """The note of a machine with surplus rods. names: of their lengths."""
-    if not names:
-        return ()
-    return (
-        f"Surplus: {', '.join(names)}. The other rods hold the pose: forward kinematics takes them, and refuses axes "
-        "at which a surplus one misses by more than max_miss. Its miss is a row of the Jacobian: command zero for it.",
-    )
-
-
 def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:
     """A plane in which a point of the plate stays: `guide("1", (0, 1, 0), on_plate(R, 0, 0))`; shifted by joints it
     lifts the plate: `guide("lift", (0, 0, 1), on_plate(0, 0, 0), S1 + HEIGHT)`. Without the position of the plate,

@@ -87,6 +87,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0, "tool_length": -130.0,
     },
+    "Softkin_SwivelArm": {"arm_length": 400.0},
     "Softkin_CylinderPalletizer": {
         "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
         "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_2_x": -420.0, "cylinder_2_z": 60.0,

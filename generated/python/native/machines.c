@@ -62,6 +62,7 @@
 #include "sccc.h"
 #include "scissorlift.h"
 #include "skewgantry3.h"
+#include "swivelarm.h"
 #include "tabletable_ab.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
@@ -164,6 +165,8 @@ softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
 softkin_regular scissorlift_regular;
 softkin_regular skewgantry3_regular;
+softkin_regular swivelarm_regular;
+softkin_regular_all swivelarm_regular_all;
 softkin_regular tabletable_ab_regular;
 softkin_regular_all tabletable_ab_regular_all;
 softkin_regular tabletable_ac_regular;
@@ -263,6 +266,7 @@ const softkin_native softkin_machines[] = {
     {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
     {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
+    {"swivelarm c5d73dd787b52bc6", &swivelarm_mechanism, {swivelarm_regular, swivelarm_regular_all}},
     {"tabletable_ab 2d2564872c585f43", &tabletable_ab_mechanism,
         {tabletable_ab_regular, tabletable_ab_regular_all}},
     {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,

@@ -94,6 +94,7 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.scissorlift import ScissorLift
     from softkin.skewgantry3 import SkewGantry3
+    from softkin.swivelarm import SwivelArm
     from softkin.tabletable_ab import TableTableAB
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
@@ -188,6 +189,7 @@ __all__ = [
     "SkewGantry3",
     "Solution",
     "Status",
+    "SwivelArm",
     "TGantry2",
     "TGantry3",
     "TableTableAB",
@@ -274,6 +276,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
     "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
+    "Softkin_SwivelArm": ("swivelarm", "SwivelArm"),
     "Softkin_TableTable_AB": ("tabletable_ab", "TableTableAB"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),
