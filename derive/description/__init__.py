@@ -9,7 +9,7 @@ dimensions: the parameters of a machine by their roles, and conditions between t
 drives: loops that move joints of a chain: cylinders, cranks with rods
 errors: the error of a description that cannot be right, and text of files as a terminal may print it
 fields: the kinds of values that the fields and parts of a mechanism hold
-joints: how joints move, what their values mean, and their ranges
+joints: how joints move, what their values mean, their ranges; notes on held and surplus ones, and on what they decide
 loops: the parts of a closed loop: rods, planes that guide points, bounds and limits of quantities
 mechanism: the mechanism with its task, and all names that a description uses
 places: the line of a description that is wrong

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import TypedDict, Unpack
@@ -222,3 +223,27 @@ def _joint_symbol(name: str) -> sp.Symbol:
     """The joint value's symbol; x, y and z are taken by the pose."""
     key = name.lower()
     return real(f"joint_{key}" if key in COORDINATE_NAMES else key)
+
+
+def notes_of(held: Sequence[str], surplus: Sequence[str], passive: str) -> Iterator[str]:
+    """The notes of every machine with joints that its inverse leaves where they are, with surplus rods (the names of
+    their lengths), or with coordinates that nobody commands.
+    """
+    if held:
+        them = "it" if len(held) == 1 else "them"
+        yield (
+            f"{' and '.join(held)} {'is' if len(held) == 1 else 'are'} held: inverse kinematics leaves {them} where "
+            f"the reference has {them} (aRef in a block), and solves for the other axes. Margins tell how far these "
+            "are from a singular pose; the Jacobian has a column for every axis."
+        )
+    if surplus:
+        yield (
+            f"Surplus: {', '.join(surplus)}. The other rods hold the pose: forward kinematics takes them, and refuses "
+            "axes at which a surplus one misses by more than max_miss. Its miss is a row of the Jacobian: command zero "
+            "for it."
+        )
+    for name in passive:
+        yield (
+            f"{name} is not commanded: the axes decide it. Inverse kinematics does not read it, and forward kinematics "
+            "reports it."
+        )

@@ -86,7 +86,7 @@ class Plane:
 
 FREE_TWIST = Plane("free_twist", tuple(ROTATION[:, 1]), tuple(ROTATION[:, 0]), sp.Integer(0))
 """The twist of a platform whose legs do not feel it: the x axis of the plate is always at right angles to its y axis.
-Its row in the matrix of the legs is a turn about the z axis of the plate."""
+This holds nothing: forward kinematics gives the platform the twist of the least turn from its home orientation."""
 
 
 @dataclass(frozen=True)
@@ -138,16 +138,6 @@ def ring_rod(name: str, base: Sequence[object], centre: Sequence[object], radius
     radius is that of a rod which passes the axis, and ends behind it.
     """
     return replace(rod(name, base, centre, length), ring=sp.sympify(radius))
-
-
-def surplus_notes(names: Sequence[str]) -> tuple[str, ...]:
-    """The note of a machine with surplus rods. names: of their lengths."""
-    if not names:
-        return ()
-    return (
-        f"Surplus: {', '.join(names)}. The other rods hold the pose: forward kinematics takes them, and refuses axes "
-        "at which a surplus one misses by more than max_miss. Its miss is a row of the Jacobian: command zero for it.",
-    )
 
 
 def guide(name: str, normal: Sequence[object], plate: Sequence[object], offset: object = 0) -> Plane:

@@ -36,7 +36,7 @@ from derive.description.dimensions import (
 from derive.description.drives import Drive, driven, with_loops
 from derive.description.errors import DescriptionError
 from derive.description.fields import as_stated, expressions
-from derive.description.joints import Interval, Joint, Kind, arc, driving, helical, linear, rotary
+from derive.description.joints import Interval, Joint, Kind, arc, driving, helical, linear, notes_of, rotary
 from derive.description.loops import (
     FREE_TWIST,
     ROTATION,
@@ -54,7 +54,6 @@ from derive.description.loops import (
     on_plate,
     ring_rod,
     rod,
-    surplus_notes,
 )
 from derive.geometry.frames import Chain
 from derive.ir.symbols import COORDINATE_NAMES, ROTATION_ENTRIES
@@ -120,6 +119,8 @@ class Task:
 
     position: str
     turning: Turning = Turning.NONE
+    passive: str = ""
+    """Coordinates of a chain that joints move and nobody commands: inverse kinematics does not read them."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.turning, Turning):
@@ -240,19 +241,9 @@ class Mechanism:
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The stated notes, after those that every machine with held or surplus joints has."""
-        names = [joint.name for joint in self.held_joints]
-        own = (*surplus_notes([joint.name for joint in self.surplus_joints]), *self.notes)
-        if not names:
-            return own
-        them = "it" if len(names) == 1 else "them"
-        held = f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} held"
-        return (
-            f"{held}: inverse kinematics leaves {them} where the reference has {them} (aRef in a block), and solves "
-            "for the other axes. Margins tell how far these are from a singular pose; "
-            "the Jacobian has a column for every axis.",
-            *own,
-        )
+        """The stated notes, after those on held and surplus joints, and on coordinates that are not commanded."""
+        held, surplus = ([joint.name for joint in of] for of in (self.held_joints, self.surplus_joints))
+        return (*notes_of(held, surplus, self.task.passive), *self.notes)
 
     @property
     def is_platform(self) -> bool:
@@ -320,12 +311,13 @@ class Mechanism:
 
     @property
     def offers_points(self) -> bool:
-        """Whether the inverse for a point off the flange is derived, or tried: not for a chain with a pitch, not for a
-        loop that turns its platform; for a machine that follows the tool's direction only on request.
+        """Whether the inverse for a point off the flange is derived, or tried: not for a chain with a pitch or with
+        passive coordinates, not for a loop that turns its platform; for a machine that follows the tool's direction
+        only on request.
         """
         if self.offset_interface is None:
-            return self.is_position and not self.is_platform
-        return self.offset_interface and not self.followed_turns
+            return self.is_position and not self.is_platform and not self.task.passive
+        return self.offset_interface and not self.followed_turns and not self.task.passive
 
     @property
     def block_name(self) -> str:

@@ -1,5 +1,5 @@
 """Arms that reach a common point, and struts or cables of variable length: those that meet in one, and what a
-description may say of surplus ones and of a load.
+description may say of surplus ones, of a load, and of coordinates that nobody commands.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from derive.description.branches import assembly
 from derive.description.dimensions import Constraint, coordinate
 from derive.description.joints import Joint, linear
 from derive.description.loops import cable, rod
-from derive.description.mechanism import Mechanism, Task, Vendor, X, Y, Z
+from derive.description.mechanism import Mechanism, Task, Turning, Vendor, X, Y, Z
 from derive.geometry.vectors import Vector, cross, dot, minus, triple, vector
 from derive.ir.program import Let
-from derive.ir.symbols import real
+from derive.ir.symbols import COORDINATE_NAMES, real
 
 _PAIRS = ((1, 2), (1, 3), (2, 3))
 _ON_A_LINE = 1e-12
@@ -159,3 +159,15 @@ def wrong_load(mechanism: Mechanism) -> Iterator[str]:
     elif len(mechanism.load) != len(mechanism.cables[0].plate):
         width = len(mechanism.cables[0].plate)
         yield f"load= has {len(mechanism.load)} coordinates, and the ends of the cables have {width}"
+
+
+def wrong_passive(mechanism: Mechanism) -> Iterator[str]:
+    """What is wrong with the coordinates that joints move and nobody commands."""
+    task = mechanism.task
+    others = "".join(c for c in COORDINATE_NAMES if c not in task.position and c in task.passive)
+    is_posed = mechanism.chain is not None and task.position and task.turning in (Turning.NONE, Turning.ABOUT_Z)
+    if task.passive and (task.passive != others or not is_posed):
+        yield (
+            f"passive={task.passive!r} must be coordinates that are not commanded, in the order x, y, z, of a chain "
+            "whose task is a position, with Turning.ABOUT_Z at most"
+        )

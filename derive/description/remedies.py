@@ -62,7 +62,7 @@ REMEDIES: tuple[tuple[str, str], ...] = (
     (r"one assembly names one", "state closed loops whose tool has two positions at most for the same axes"),
     (r"a flip must stand at the end", "put it last in the chain"),
     (r"its home pose is not where the legs reach it", "compute home=(…) from the nominal lengths"),
-    (r"is not commanded but the joints move it", 'command it too: task=Task("xyz")'),
+    (r"is not commanded but the joints move it", 'command it too: task=Task("xyz"); or let it move: passive="y"'),
     (r"its end must be a point of the plate", "write it with X, Y, Z, or with on_plate(…)"),
     (r"Initialize refuses the nominal parameters", "choose nominal values that fit each other, and a home in reach"),
     (r"a machine has no regular pose", "one joint repeats what another does: change the chain, or the task"),

@@ -24,7 +24,7 @@ from derive.description.mechanism import (
     Y,
     Z,
 )
-from derive.description.reach import wrong_load, wrong_surplus
+from derive.description.reach import wrong_load, wrong_passive, wrong_surplus
 from derive.ir.constants import DEGREE
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
@@ -54,8 +54,8 @@ def _problems(mechanism: Mechanism, names: Mapping[str, str]) -> Iterator[str]:
     for joint in mechanism.joints:
         yield from _joint(mechanism, joint)
     yield from _held(mechanism)
-    yield from wrong_surplus(mechanism)
-    yield from wrong_load(mechanism)
+    for wrong in (wrong_surplus, wrong_load, wrong_passive):
+        yield from wrong(mechanism)
     yield from _periods(mechanism)
     yield from wrong_amounts(mechanism)
     yield from _shape(mechanism)

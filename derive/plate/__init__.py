@@ -11,4 +11,5 @@ stated_rods: stated equations that are rods, or planes, whatever their form; len
 surplus: rods beyond those that hold a point or a platform: which they are, and whether they fit
 tension: cables only pull: the tensions under a load
 turning: forward kinematics by iteration, the joints at the home pose, sampled poses
+turns: the rates of the angles of a platform; the twist of the least turn from home
 """

@@ -21,10 +21,10 @@ from derive.ir.constants import SHORTEST_LINK
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let
 from derive.ir.symbols import COORDINATE_NAMES, HEADING, ROTATION_ENTRIES, SCALE, cosine, real, sine
+from derive.plate.turns import ANGLES, least_turn
 
 RADIUS = real("platform_radius")
 MARGIN = "rods_dependent"
-ANGLES = ("roll", "pitch", "yaw")
 
 Vector = tuple[sp.Expr, ...]
 Leg = Rod | Plane
@@ -183,17 +183,17 @@ def plane_row(
 
     rotation: that of the plate; named: whether angles and roots of the machine have names.
     """
-    normal, there = names(NORMAL, plane), dict(zip(ROTATION_ENTRIES, rotation, strict=True))
+    if plane.turns_along:
+        return least_turn(plane.name, rotation[:, 2], moments(mechanism, plane))
+    normal = names(NORMAL, plane)
     values = (with_fixed_names(mechanism, v) if named else v for v in plane.normal)
-    values = (v.xreplace(there) for v in values) if plane.turns_along else values
     lets = (*(Let(n, v) for n, v in zip(normal, values, strict=True)), *_moment(mechanism, plane, arm, normal))
     return with_note(lets, f"guide {plane.name}: its normal, and the moment of this about the platform's origin")
 
 
 def _moment(mechanism: Mechanism, leg: Leg, arm: Sequence[sp.Expr], vector: Sequence[sp.Expr]) -> tuple[Let, ...]:
     padded = [sp.Matrix([*v, *[0] * (3 - len(v))]) for v in (arm, vector)]
-    size = sp.Integer(1) if isinstance(leg, Plane) and leg.turns_along else RADIUS
-    moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / size, strict=True))
+    moment = dict(zip(COORDINATE_NAMES, padded[0].cross(padded[1]) / RADIUS, strict=True))
     return tuple(Let(n, moment[c]) for n, c in zip(moments(mechanism, leg), rotation_axes(mechanism), strict=True))
 
 

@@ -9,7 +9,7 @@ the second time: the step between leaves rounding errors only, however small det
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -39,7 +39,6 @@ from derive.ir.symbols import (
     sine,
 )
 from derive.plate.legs import (
-    ANGLES,
     NORMAL,
     RADIUS,
     about_z,
@@ -66,6 +65,7 @@ from derive.plate.legs import (
 )
 from derive.plate.passive import completed
 from derive.plate.surplus import miss_checks
+from derive.plate.turns import least_turned, rates
 
 SEARCH = "find_platform"
 """The name of the program."""
@@ -162,7 +162,8 @@ def _call(mechanism: Mechanism, start: Start) -> Call:
     """The call of the iteration that all programs share."""
     search = search_program(mechanism)
     axes = tuple((j.axis, j.axis) for j in mechanism.joints)
-    begin = zip(_arguments(mechanism), (*start.position, *start.rotation), strict=True)
+    start_values = zip(_arguments(mechanism), (*start.position, *start.rotation), strict=True)
+    begin = (pair for pair in start_values if pair[0] in search.inputs)  # all of it, but for a twist that no leg feels
     outputs = tuple(real(o.name) for o in search.outputs)
     return Call(search, (*axes, *begin), outputs, f"pose of the platform, by Newton's method from {start.name}")
 
@@ -228,17 +229,22 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         Let(within, CONVERGED * SCALE, "tolerance of the leg lengths"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, reason=about_machine(Why.OTHER_ASSEMBLY)),
-        *with_note(_orientation(mechanism), "orientation of the platform"),
+        *_orientation(mechanism),
         *_mirrors(mechanism),
     )
 
 
-def _orientation(mechanism: Mechanism) -> Iterator[Let]:
-    """The rotation that was found: the rotation from the start, times the rotation of the start."""
+def _orientation(mechanism: Mechanism) -> Iterator[Statement]:
+    """The rotation that was found: the rotation from the start, times the rotation of the start. A twist that no leg
+    feels is that of the least turn from home.
+    """
     rotation = _turn(mechanism) * _begin_rotation(mechanism)
-    entries = rotation if _is_free(mechanism) else rotation[:2, 0]
-    for name, entry in zip(_rotation_names(mechanism), entries, strict=True):
-        yield from (Let(_found(name), entry), Let(name, _found(name)))
+    if FREE_TWIST in mechanism.guides:
+        statements, rotation = least_turned(rotation[:, 2])
+        yield from statements
+    entries = zip(_rotation_names(mechanism), rotation if _is_free(mechanism) else rotation[:2, 0], strict=True)
+    found = (let for name, entry in entries for let in (Let(_found(name), entry), Let(name, _found(name))))
+    yield from with_note(found, "orientation of the platform")
 
 
 def _mirrors(mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -287,7 +293,7 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
         lets += turned(_turn(mechanism), names("start_arm", plane), arm)
         lets += plane_row(mechanism, plane, arm, rotation)
         point = arm if is_direction(plane) else (p + a for p, a in zip(position_of(mechanism), arm, strict=False))
-        ahead = sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
+        ahead = 0 if plane.turns_along else sp.Add(*[n * p for n, p in zip(normal, point, strict=True)])
         note = f"distance of guide {plane.name} from its plane"
         lets.append(Let(leg_symbol("error", plane), ahead - next(values), note))
     return tuple(lets)
@@ -326,25 +332,7 @@ def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
             "Newton step: twist that cancels the length errors",
         ),
         *(Let(n, v / RADIUS) for n, v in zip(spin, twist[1], strict=True)),
-        *_rates(spin),
+        *rates(spin),
         Let(size, Root(sp.Add(*[s**2 for s in shares])), "size of the step, in characteristic lengths and radians"),
         Let(real("stretch"), Select(too_large, 2 * size, sp.Integer(1))),
-    )
-
-
-def _rates(spin: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """The rates of the angles: for yaw alone, w.
-
-    Else w = E (roll', pitch', yaw') with E = [[cp cy, -sy, 0], [cp sy, cy, 0], [-sp, 0, 1]].
-    """
-    if len(spin) == 1:
-        return (Let(real("yaw_rate"), spin[0]),)
-    roll, pitch, yaw = (real(f"{a}_rate") for a in ANGLES)
-    cos_pitch, sin_pitch, cos_yaw, sin_yaw = map(real, ("cos_pitch", "sin_pitch", "cos_yaw", "sin_yaw"))
-    divisor = real("cos_pitch_divisor")
-    return (
-        Let(divisor, Select(sp.Gt(sp.Abs(cos_pitch), FREE_ANGLE), cos_pitch, sp.Integer(1))),
-        Let(roll, (cos_yaw * spin[0] + sin_yaw * spin[1]) / divisor),
-        Let(pitch, cos_yaw * spin[1] - sin_yaw * spin[0]),
-        Let(yaw, spin[2] + sin_pitch * roll),
     )

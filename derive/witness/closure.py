@@ -43,6 +43,7 @@ from derive.witness.frames import (
     task_rows,
     term,
     turn,
+    with_twist,
 )
 
 LEAST_MARGIN = 1e-6
@@ -136,7 +137,7 @@ def closure_of(described: Mechanism, machine: Mechanism) -> Closure:
     machine: what was derived of it. It gives the names of its inputs in programs, and says what the signs of branches
     and of an assembly mode mean that the description does not name.
     """
-    described, count = with_exact_angles(as_in(machine, described)), len(described.joints)
+    described, count = with_twist(with_exact_angles(as_in(machine, described))), len(described.joints)
     q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
     columns = _columns(described, machine)
     p = ca.SX.sym("p", len(columns))

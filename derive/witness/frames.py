@@ -15,7 +15,7 @@ import numpy as np
 import sympy as sp
 
 from derive.description.joints import Joint, Loop
-from derive.description.mechanism import DescriptionError, Mechanism, Turning
+from derive.description.mechanism import ROTATION, DescriptionError, Mechanism, Turning
 from derive.geometry.frames import Chain, Factor, Motion
 from derive.ir.constants import DEGREE
 from derive.ir.interpret import Array
@@ -147,6 +147,17 @@ def passive_rows(described: Mechanism) -> tuple[str, ...]:
     is_held = described.task.turning is Turning.DIRECTION
     is_held = is_held and len(described.equations) > len(task_rows(described)) + len(own)  # else no leg feels the twist
     return (*own, *((_TWIST,) if is_held else ()))
+
+
+def with_twist(described: Mechanism) -> Mechanism:
+    """The description; one more equation says that its twist is the least turn from home, where it leaves it free."""
+    follows = described.is_platform and described.task.turning is Turning.DIRECTION
+    if not follows or _TWIST in passive_rows(described):
+        return described
+    roll, pitch, yaw = described.home[-3:]
+    home = sp.rot_ccw_axis3(yaw) * sp.rot_ccw_axis2(pitch) * sp.rot_ccw_axis1(roll)
+    twist = home.col(1).dot(ROTATION.col(0)) - home.col(0).dot(ROTATION.col(1))
+    return replace(described, closure=(*described.closure, twist))
 
 
 def entries_at(column: Term, places: list[int]) -> Term:

@@ -43,7 +43,7 @@ SPECIAL["Kin_Pos_RRR"] = {
 APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY", "Softkin_ThreeCables", "Softkin_Tripod_Struts"}
 """Loops whose factors vanish together only where nothing controls the plate."""
 CANDIDATES = tuple(m for _, m in catalogue() if not (m.is_platform or m.is_orientation or m.drives))
-SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z", "Softkin_Transmit"}
+SINGLE = {"Kin_P2X_Type2", "Kin_Polar", "Kin_Polar_Z", "Softkin_SwivelArm", "Softkin_Transmit"}
 """Mechanisms with one factor."""
 PAIRED = tuple(m for m in CANDIDATES if softkin.catalogue()[m.name].MARGINS and m.name not in SINGLE)
 """Mechanisms with two factors or more."""

@@ -210,6 +210,11 @@ def _skew(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0] + q[1] * np.cos(angle), q[1] * np.sin(angle), q[2], 0 * q[0]
 
 
+def _swivel(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The tool on a cylinder about axis A1."""
+    return p["arm_length"] * np.cos(q[0]), p["arm_length"] * np.sin(q[0]), q[1], q[0] + q[2]
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
@@ -229,6 +234,7 @@ FORMULAS: dict[str, Formula] = {
     "Softkin_Palletizer5": _tilting_palletizer,
     "Softkin_ScaraOnRail": _scara_on_rail,
     "Softkin_SkewGantry3": _skew,
+    "Softkin_SwivelArm": _swivel,
     "Softkin_TableTable_AB": _of_order("", "AB"),
     "Softkin_TableTable_AC": _of_order("", "AC"),
     "Softkin_TableTable_BC": _of_order("", "BC"),

@@ -101,6 +101,12 @@ class Machine:
         """Whether a chain turns about more than one direction: no plane, no heading, no outer circle."""
         return is_spatial(self.mechanism)
 
+    @property
+    def has_an_elbow(self) -> bool:
+        """Whether it has branches because of two links in a plane, which one circle around another bounds."""
+        links = [p for p in self.mechanism.parameters if p.role in LENGTHS]
+        return self.robot.BRANCHES > 0 and not self.is_spatial and len(links) > 1
+
     def answers(self, statuses: Array) -> Array:
         """Which rows a slot answers; a machine whose branches each have a reach may refuse some."""
         answered = statuses == softkin.Status.OK

@@ -15,6 +15,8 @@ from tests.catalogue.references import held_at
 from tests.catalogue.refusals import refusal
 from tests.catalogue.self_motion import inward, is_free, twisted
 from tests.catalogue.test_round_trip import slots
+from tests.catalogue.turning_machines import TurningMachine
+from tests.mechanisms import has_struts, in_the_task
 
 BOUNDARY = Fraction(1, 10**12)
 """A squared sine that is negative by at most this is zero."""
@@ -72,7 +74,7 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded, exactly and beside: refused where the squared sine is below -1e-12, and only there."""
     outcomes = set()
     for machine in few(machines):
-        if machine.robot.BRANCHES == 0 or machine.is_spatial:
+        if not machine.has_an_elbow:
             continue
         first, second = lengths(machine)[:2]
         for edge in (first + second, abs(first - second)):
@@ -92,21 +94,19 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
                     answered = statuses == Status.OK
                     inside = tuple(f[answered] for f in frames)
                     assert machine.miss(found[answered], *inside).max(initial=0.0) < 1e-11
-    if machines[0].is_spatial:
-        assert not outcomes  # where branches meet is the edge: see below
-    elif machines[0].robot.BRANCHES:
+    if machines[0].has_an_elbow:
         assert outcomes == {(-1, 0), (0, 0), (1, 0), (1, 3), (-1, 3)}
-    else:
+    elif machines[0].robot.BRANCHES == 0:  # else where branches meet is the edge: see below
         assert all(locus.branch is None for machine in machines for locus in loci(machine))
 
 
 @pytest.mark.long("Pos_RRR")
 @pytest.mark.serial
-def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None:
+def test_where_two_branches_meet(machines: tuple[Machine, ...]) -> None:
     """On the one side of a fold both answer, however near; on the other none does, but for rounding."""
     folds = 0
     for machine in machines[1::2]:
-        if not machine.is_spatial:
+        if machine.has_an_elbow:
             continue
         for locus in loci(machine):
             if locus.branch is None:
@@ -130,7 +130,7 @@ def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None
                 else:
                     assert (statuses == Status.UNREACHABLE).all(), size
     has_an_edge = machines[0].has_a_reach or machines[0].lowest_direction > -1.0
-    assert bool(folds) == (machines[0].is_spatial and has_an_edge)
+    assert bool(folds) == (has_an_edge and not machines[0].has_an_elbow)
 
 
 def alone(machine: Machine, locus: Locus) -> Array:
@@ -147,7 +147,8 @@ def test_far_away(machines: tuple[Machine, ...]) -> None:
         rotations, _ = turned(machine, 4)
         positions = np.array([[1e7, 0, 0], [0, -1e7, 0], [1e6, 1e6, 0], [-7e6, 7e6, 0]])
         _, statuses = machine.robot.inverse_batch(positions, rotations, None, at_home(machine, 4))
-        assert (statuses == (Status.UNREACHABLE if machine.has_a_reach else Status.OK)).all()
+        is_far = in_the_task(machine.mechanism.name, positions).any(axis=1) & machine.has_a_reach
+        assert (statuses == np.where(is_far, Status.UNREACHABLE, Status.OK)).all()
 
 
 def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -192,7 +193,12 @@ def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tup
             assert (statuses == np.where(is_low, Status.UNREACHABLE, Status.OK)).all()
             continue
         if mechanism.task.turning in (Turning.FULL, Turning.PITCH) or (is_far and not turns):
-            assert machine.answers(statuses).any()  # another pose as any
+            if isinstance(machine, TurningMachine) and has_struts(mechanism):  # one pose of its legs, in either mode
+                where = positions, machine.closure.reachable(opposite)
+                joints, closed = machine.closure.joints_at(*where, np.random.default_rng(6))
+                assert ((statuses == Status.OK) == (closed & (machine.closure.side(joints, *where) > 0))).all()
+            else:
+                assert machine.answers(statuses).any()  # another pose as any
             continue
         assert (statuses == (Status.UNREACHABLE if turns else Status.OK)).all()
         tilt = 1e-3

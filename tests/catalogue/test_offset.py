@@ -18,7 +18,7 @@ ROUND_TRIP = 1e-8
 REGULAR = 0.03
 """How much the point moves at least, in reaches per radian or per length, whichever way."""
 NO_POINT = (Turning.DIRECTION, Turning.PITCH, Turning.FULL)
-WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z", "Softkin_Planar_3RRR", "Softkin_Transmit")
+WITHOUT = ("Kin_Polar", "Kin_Polar_Z", "Kin_Scara3_Z", "Softkin_Planar_3RRR", "Softkin_SwivelArm", "Softkin_Transmit")
 
 
 def offered(machines: tuple[Machine, ...]) -> tuple[Machine, ...]:

@@ -55,7 +55,7 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
 def test_the_catalogue_is_the_descriptions() -> None:
     assert set(softkin.catalogue()) == {m.name for _, m in catalogue()}
     assert "Kin_Scara4_ZCCC" in softkin.catalogue()
-    assert len(softkin.catalogue()) == 73
+    assert len(softkin.catalogue()) == 75
 
 
 def test_everything_that_is_offered_is_there() -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from derive.description.mechanism import ROTATION, Mechanism, Turning
 from derive.ir.constants import DEGREE
 from tests.catalogue.closure import POSITION, Array, Closure, Formula, derivative
+from tests.mechanisms import has_free_twist
 from tests.orthonormal import turned
 
 SHIFT, TURN = 0.2, 0.35
@@ -52,6 +53,8 @@ class TurningClosure(Closure):
         arms = np.array(points[len(points) // 2 :])
         self.reach = float(np.sqrt(((arms - arms.mean(axis=0)) ** 2).sum(axis=1).mean()))
         self.reach = max(self.reach + float(np.mean(self._sizes())), 1e-9)
+        self.is_free = has_free_twist(mechanism)
+        self._equations += [self.reach * self._twist()] if self.is_free else []
         self.at_home = self._home_determinant()
         self._mode, self.at_home = np.sign(self.at_home), abs(self.at_home)
 
@@ -159,8 +162,18 @@ class TurningClosure(Closure):
         along, across = rotations[:, 0, 0] + rotations[:, 1, 1], rotations[:, 1, 0] - rotations[:, 0, 1]
         return turned(2, np.arctan2(across, along))
 
+    def _twist(self) -> sp.Expr:
+        """Zero where a platform whose twist is free has that of the least turn from home."""
+        x, y = (sp.Matrix(self.home_rotation[:, k]) for k in (0, 1))
+        return y.dot(ROTATION.col(0)) - x.dot(ROTATION.col(1))
+
     def _twisted(self, rotations: Array) -> Array:
-        """The rotations turned about the tool until the plane holds, its slope with the sign at home."""
+        """The rotations turned about the tool until the plane holds, its slope with the sign at home; where the twist
+        is free, to the least turn from home.
+        """
+        if self.is_free:
+            seen = self.home_rotation.T @ rotations
+            return rotations @ turned(2, np.arctan2(seen[:, 0, 1] - seen[:, 1, 0], seen[:, 0, 0] + seen[:, 1, 1]))
         if not self._fixed:
             return rotations
         assert not self.task and len(self._fixed) == 1

@@ -113,6 +113,9 @@ WRONG: dict[str, str] = {
         RAIL, ("chain=Tx(A1) * Ty(A2), ", "")
     ),
     "the task commands '…': it must be coordinates in the order x, y, z, or ''": arm('Task("xy")', 'Task("zx")'),
+    "passive='…' must be coordinates that are not commanded, in the order x, y, z": arm(
+        'Task("xy")', 'Task("xy", passive="y")'
+    ),
     "… is not commanded but the joints move it; command it too": changed(
         SCARA,
         ('Task("xyz", Turning', 'Task("xy", Turning'),

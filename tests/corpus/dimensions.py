@@ -40,6 +40,13 @@ _HEXAGLIDE |= {f"rod_length_{i}": 620.0 + 3.0 * i for i in range(1, 7)} | {"home
 _HEXAGLIDE |= {f"rail_{i}_z": 2.0 * i for i in range(1, 7)}
 _HEXAGLIDE |= {f"carriage_side_{i}": -1.0 for i in (2, 3, 4, 6)}
 
+_PENTAPOD = {
+    f"base_{i}_{letter}": value
+    for i, point in enumerate(((-418.0, 325.0), (420.0, 324.0), (417.0, -326.0), (3.0, -493.0), (-415.0, -322.0)), 1)
+    for letter, value in zip("xyz", (*point, 890.0 + 5.0 * i), strict=True)
+} | {f"ring_{i}_z": z for i, z in enumerate((185.0, 160.0, 41.0, 14.0, 68.0), 1)}
+_PENTAPOD |= {f"ring_{i}_radius": 70.0 + 4.0 * i for i in range(1, 6)} | {"home_z": 400.0}
+
 _RODWRIST = {
     f"{what}_{i}_{letter}": value
     for what, points in (
@@ -80,6 +87,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
         "base_height": 320.0, "shoulder_offset": 80.0, "link_length_1": 300.0, "link_length_2": 350.0,
         "wrist_offset_x": 60.0, "wrist_offset_z": -90.0, "tool_length": -130.0,
     },
+    "Softkin_SwivelArm": {"arm_length": 400.0},
     "Softkin_CylinderPalletizer": {
         "base_height": 500.0, "shoulder_offset": 150.0, "link_length_1": 700.0, "link_length_2": 800.0,
         "wrist_offset_x": 120.0, "wrist_offset_z": -90.0, "cylinder_2_x": -420.0, "cylinder_2_z": 60.0,
@@ -166,6 +174,7 @@ DIMENSIONS: dict[str, dict[str, float]] = {
     },
     "Softkin_Hexaglide": _HEXAGLIDE,
     "Softkin_Planar_3RRR": _3RRR,
+    "Softkin_Pentapod": _PENTAPOD,
     "Softkin_RodWrist": _RODWRIST,
     "Kin_Tool": {"tool_x": 15.0, "tool_y": -8.0, "tool_z": -60.0},
     "Kin_Tripod_Linear": {

@@ -291,7 +291,7 @@ def test_a_held_joint_is_a_letter() -> None:
     assert pose_of(machine, joints) == pytest.approx(pose | {"U": 150.0}, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR"])
+@pytest.mark.parametrize("name", ["Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Pentapod", "Softkin_Planar_3RRR"])
 def test_a_pose_before_that_is_far(name: str) -> None:
     """Iterations that begin too far away, or at no pose, begin again at home, and find the same pose."""
     machine = machine_of(name)

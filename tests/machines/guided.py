@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sympy import Expr, Matrix, cos, pi, sin
+from sympy import Expr, Float, Matrix, cos, pi, sin
 
 from derive.description.mechanism import (
     ROTATION,
@@ -129,7 +129,7 @@ GUIDED: Mapping[str, Mechanism] = {
         home=(0, 0, 450, 0, 0, 0),
     ),
     "pentapod, whose struts end on the spindle and on rings around it": Mechanism(
-        name="Kin_Pentapod",
+        name="Kin_Spindle",
         joints=STRUTS,
         parameters=(FRAME, RING),
         task=Task("xyz", Turning.DIRECTION),
@@ -137,7 +137,7 @@ GUIDED: Mapping[str, Mechanism] = {
             *(ring_rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), RING, s) for s, (x, y, z) in _FIVE[:3]),
             *(rod(s.name[1:], (x, y, FRAME), on_plate(0, 0, z), s) for s, (x, y, z) in _FIVE[3:]),
         ),
-        home=(0, 0, 400, 0, 0, 0),
+        home=(0, 0, 400, Float(0.1), Float(-0.15), Float(0.4)),
     ),
     "plate on two cylinders along a skewed guide": Mechanism(
         name="Kin_SkewedGuide",

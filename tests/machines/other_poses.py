@@ -81,7 +81,7 @@ class Platform:
     @property
     def largest_turn(self) -> float:
         """The largest turn about an axis of which the header tells."""
-        return float(np.pi / 2 if self.mechanism.motion.turning is Turning.FULL else np.pi)
+        return float(np.pi if self.mechanism.motion.turning is Turning.ABOUT_Z else np.pi / 2)
 
     def frames(self, away: float, turned: float) -> Iterator[Frame]:
         """Frames within a distance of home in characteristic lengths, and an angle about each axis."""

@@ -28,13 +28,14 @@ pytestmark = pytest.mark.slow
 
 EVERY = pytest.mark.parametrize("name", GUIDED)
 TILTING = [name for name, m in GUIDED.items() if m.task.turning is Turning.DIRECTION]
+PENTAPOD = "pentapod, whose struts end on the spindle and on rings around it"
 SOLUTIONS = {
     "3-RPS on a raised base": 1,
     "Z3 head with slides": 4,
     "head in metres whose planes form a T, stated as equations": 4,
     "3-RRR on a lift": 7,
     "tripod whose planes form a T, over a table with two slides": 1,
-    "pentapod, whose struts end on the spindle and on rings around it": 1,
+    PENTAPOD: 1,
     "plate on two cylinders along a skewed guide": 1,
 }
 """The most solutions in the assembly mode of the machine, at the poses where the witness counts them."""
@@ -149,6 +150,17 @@ def _untwisted(one: Guided, frame: softkin.Frame) -> softkin.Rotation:
     if one.mechanism.task.turning is not Turning.DIRECTION:
         return frame.rotation
     return tuple(map(tuple, swings(np.array([0.0, 0.0, 1.0]), np.array(frame.rotation)[:, 2])))  # type: ignore[return-value]
+
+
+def test_a_free_twist_is_that_of_the_least_turn_from_home() -> None:
+    """From any start: the angle of the turn from home is that between the directions of the tool."""
+    one = guided(PENTAPOD)
+    _, home = home_of(one)
+    for frame in commands(one, 8, seed=12, size=0.6):
+        axes = one.robot.inverse(frame)
+        found = [np.array(one.robot.forward(axes, *start)[0].rotation) for start in ((), (frame,))]
+        assert_allclose(found[0], found[1], atol=_SAME)
+        assert_allclose((np.trace(home.T @ found[0]) - 1.0) / 2.0, home[:, 2] @ found[0][:, 2], atol=1e-12)
 
 
 @EVERY

@@ -16,7 +16,7 @@ NAMES = tuple(DIMENSIONS)
 SOME = ("Kin_ArticulatedRobot_6DOF", "Kin_Scara4_ZCcoupled_Type1", "Kin_Delta_P3C_Type3", "Kin_Hexapod", "Kin_Wrist2",
         "Kin_Ac6_RZRYRYRXRYRZ_J6Offset", "Kin_Pos_RRR", "Kin_Crane")  # fmt: skip
 """One of each kind: with branches and without, closed, with held axes, searched."""
-PLATFORMS = ("Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR")
+PLATFORMS = ("Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Pentapod", "Softkin_Planar_3RRR")
 """Those whose axes fit together in few places."""
 
 

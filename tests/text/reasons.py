@@ -59,6 +59,7 @@ def _commands(one: Any, sample: Sample) -> Iterator[Command]:
     yield Command(position, HALF_TURN, own, near)
     above = (*position[:2], position[2] + 1.0)  # a planar machine refuses it in all branches together
     yield Command(above, rotation, (0,) * len(own), near)
+    yield Command(_changed(position, 0), rotation, (0,) * len(own), near)
 
 
 def _changed(values: tuple[float, ...], place: int) -> tuple[float, ...]:

@@ -161,7 +161,7 @@ def test_a_gear_of_one_turn_changes_nothing() -> None:
 
 METHODS = [(mechanism, method) for mechanism in POSITION_KINEMATICS for method in public_methods(mechanism)]
 """Every method that stands in the emitted text. That private ones run is shown statement by statement elsewhere."""
-ITERATED = ("Hexapod", "Hexaglide", "3RRR", "ThreeParallel")
+ITERATED = ("Hexapod", "Hexaglide", "Pentapod", "3RRR", "ThreeParallel")
 DEAR = tuple(f"{name}.{method}" for name in ITERATED for method in ("CartesianToAxes", "Diagnose"))
 """What takes long: inverse kinematics of machines that iterate."""
 EVERYWHERE = (
@@ -172,7 +172,7 @@ EVERYWHERE = (
 
 
 def test_every_loop_is_here() -> None:
-    assert len(LOOPS) == 19
+    assert len(LOOPS) == 20
 
 
 @pytest.mark.parametrize("mechanism", (*POSITION_KINEMATICS, *ORIENTATIONS), ids=lambda m: m.name)

@@ -102,7 +102,8 @@ def test_every_machine_is_drawn(name: str, seen: Seen) -> None:
     if not found["axes"]:
         return
     frame, configuration = robot.forward(found["axes"])
-    tolerance = 1e-6 if name in ("Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Planar_3RRR") else 1e-9  # iterated
+    is_iterated = name in ("Kin_Hexapod", "Softkin_Hexaglide", "Softkin_Pentapod", "Softkin_Planar_3RRR")
+    tolerance = 1e-6 if is_iterated else 1e-9
     assert np.allclose(frame.position, found["frame"]["position"], rtol=0, atol=tolerance)
     assert list(configuration) == found["configuration"]
     there = (found["frame"]["position"], found["frame"]["rotation"])

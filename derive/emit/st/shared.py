@@ -27,8 +27,8 @@ OUTCOME = "outcome"
 
 _AXES = "a."
 """How the spelling of an axis value begins, which is handed on with all others."""
-_OWN_AXES = "axes["
-"""How the spelling of a constant begins that a structure of an axis holds."""
+_OWN = ("axes[", "home.")
+"""How the spellings of constants begin that structures of the block hold: of an axis, and the home pose."""
 _MOST_OUTPUTS = 12
 """The most results that are outputs of their own: more than a position and a rotation stand in a structure."""
 _ROTATION = frozenset(r.name for r in ROTATION_ENTRIES)
@@ -88,7 +88,7 @@ def signature_of(program: Program, spelled: Mapping[str, str], contract: Contrac
     block: the name of the block, which stands in the type of a structure.
     """
     parts = {spelled.get(s.name, s.name) for s in program.inputs}
-    whole = {re.split(r"\W", text)[0] for text in parts if not (text.isidentifier() or text.startswith(_OWN_AXES))}
+    whole = {re.split(r"\W", text)[0] for text in parts if not (text.isidentifier() or text.startswith(_OWN))}
     axes = contract.signatures["Jacobian"].parameters[1]
     if not whole <= {axes.name}:
         raise TypeError(
@@ -117,11 +117,11 @@ def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
 
 
 def fields_of_start(program: Program) -> dict[str, str]:
-    """The fields of a pose by the names of the arguments that are one; empty if its rotation is not among them."""
+    """The fields of a pose by the names of the arguments that are one; empty without a part of a rotation."""
     fields = {f"begin_{c}": f".v.d{c.upper()}" for c in "xyz"}
     fields |= {f"begin_{r.name}": f".rot[{r.name[1]}, {r.name[2]}]" for r in ROTATION_ENTRIES}
     names = {s.name for s in program.inputs}
-    is_pose = names >= {f"begin_{name}" for name in _ROTATION}
+    is_pose = not names.isdisjoint(f"begin_{name}" for name in _ROTATION)
     return {name: field for name, field in fields.items() if is_pose and name in names}
 
 

@@ -46,7 +46,8 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     if mechanism.chain is None:
         return _with_heading(mechanism, stated_closure(mechanism, {}), mechanism.heading)
     chain, turning = mechanism.chain, mechanism.task.turning
-    is_spaced, is_upright = is_spatial(chain), turning is Turning.ABOUT_Z
+    is_spaced = is_spatial(chain) and not mechanism.task.passive  # a split of the chain reads all coordinates
+    is_upright = turning is Turning.ABOUT_Z
     if mechanism.followed_turns or (is_spaced and not is_upright):
         return _spatial_closure(mechanism, chain, mechanism.solved_joints, turning)
     closure = _position_closure(mechanism, pose_of(chain).position)
@@ -172,12 +173,14 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
 
 
 def _planes_of(mechanism: Mechanism, position: sp.ImmutableMatrix) -> tuple[tuple[str, sp.Expr], ...]:
-    """The coordinates of a chain that the task does not command, with their values, which no joint changes."""
+    """The coordinates of a chain that the task does not command, with their values, which no joint changes; not those
+    that are passive.
+    """
     joints = {j.symbol for j in mechanism.joints}
     moving = joints | {f(a) for a in angles_of(mechanism) for f in (sine, cosine)}
     planes: list[tuple[str, sp.Expr]] = []
     for value, name in zip(position, COORDINATE_NAMES, strict=True):
-        if name in mechanism.task.position or not mechanism.task.position:
+        if name in (*mechanism.task.position, *mechanism.task.passive) or not mechanism.task.position:
             continue
         plane = with_fixed_names(mechanism, sp.sympify(value))
         if plane.free_symbols & joints:

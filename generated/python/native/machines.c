@@ -44,6 +44,7 @@
 #include "palletizer.h"
 #include "palletizer5.h"
 #include "pcc.h"
+#include "pentapod.h"
 #include "planar_3rrr.h"
 #include "polar.h"
 #include "polar_z.h"
@@ -61,6 +62,7 @@
 #include "sccc.h"
 #include "scissorlift.h"
 #include "skewgantry3.h"
+#include "swivelarm.h"
 #include "tabletable_ab.h"
 #include "tabletable_ac.h"
 #include "tabletable_bc.h"
@@ -163,6 +165,8 @@ softkin_regular scaraonrail_regular;
 softkin_regular_all scaraonrail_regular_all;
 softkin_regular scissorlift_regular;
 softkin_regular skewgantry3_regular;
+softkin_regular swivelarm_regular;
+softkin_regular_all swivelarm_regular_all;
 softkin_regular tabletable_ab_regular;
 softkin_regular_all tabletable_ab_regular_all;
 softkin_regular tabletable_ac_regular;
@@ -242,6 +246,7 @@ const softkin_native softkin_machines[] = {
     {"palletizer 51e85090a3f5b35b", &palletizer_mechanism, {palletizer_regular, palletizer_regular_all}},
     {"palletizer5 17489758afc6a96c", &palletizer5_mechanism, {palletizer5_regular, palletizer5_regular_all}},
     {"pcc 825d834aaed1486c", &pcc_mechanism, {pcc_regular, pcc_regular_all}},
+    {"pentapod 0d86fc990a80c13a", &pentapod_mechanism, {NULL, NULL}},
     {"planar_3rrr 014f8bfe0d1147d0", &planar_3rrr_mechanism, {NULL, NULL}},
     {"polar fe58144c4da08e8c", &polar_mechanism, {polar_regular, NULL}},
     {"polar_z 34f4d5c37c0e3c62", &polar_z_mechanism, {polar_z_regular, NULL}},
@@ -261,6 +266,7 @@ const softkin_native softkin_machines[] = {
     {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
     {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
+    {"swivelarm c5d73dd787b52bc6", &swivelarm_mechanism, {swivelarm_regular, swivelarm_regular_all}},
     {"tabletable_ab 2d2564872c585f43", &tabletable_ab_mechanism,
         {tabletable_ab_regular, tabletable_ab_regular_all}},
     {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,

@@ -12,7 +12,7 @@
 #define SOFTKIN_START PyInit__softkin_native
 /** The digest of what all machines share: the package compares it. */
 #define SOFTKIN_SOURCES "a0337a986d5acf75"
-#define SOFTKIN_MACHINES 73
+#define SOFTKIN_MACHINES 75
 
 /** A machine, with the key that its class has, too: the module, and a digest of the C. */
 typedef struct {

@@ -76,6 +76,7 @@ if TYPE_CHECKING:
     from softkin.palletizer import Palletizer
     from softkin.palletizer5 import Palletizer5
     from softkin.pcc import PCC
+    from softkin.pentapod import Pentapod
     from softkin.planar_3rrr import Planar3RRR
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.scissorlift import ScissorLift
     from softkin.skewgantry3 import SkewGantry3
+    from softkin.swivelarm import SwivelArm
     from softkin.tabletable_ab import TableTableAB
     from softkin.tabletable_ac import TableTableAC
     from softkin.tabletable_bc import TableTableBC
@@ -166,6 +168,7 @@ __all__ = [
     "Palletizer",
     "Palletizer5",
     "Parameter",
+    "Pentapod",
     "Planar3RRR",
     "Polar",
     "PolarZ",
@@ -186,6 +189,7 @@ __all__ = [
     "SkewGantry3",
     "Solution",
     "Status",
+    "SwivelArm",
     "TGantry2",
     "TGantry3",
     "TableTableAB",
@@ -254,6 +258,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Softkin_Palletizer": ("palletizer", "Palletizer"),
     "Softkin_Palletizer5": ("palletizer5", "Palletizer5"),
     "Kin_PCC": ("pcc", "PCC"),
+    "Softkin_Pentapod": ("pentapod", "Pentapod"),
     "Softkin_Planar_3RRR": ("planar_3rrr", "Planar3RRR"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
@@ -271,6 +276,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Softkin_ScissorLift": ("scissorlift", "ScissorLift"),
     "Softkin_SkewGantry3": ("skewgantry3", "SkewGantry3"),
+    "Softkin_SwivelArm": ("swivelarm", "SwivelArm"),
     "Softkin_TableTable_AB": ("tabletable_ab", "TableTableAB"),
     "Softkin_TableTable_AC": ("tabletable_ac", "TableTableAC"),
     "Softkin_TableTable_BC": ("tabletable_bc", "TableTableBC"),

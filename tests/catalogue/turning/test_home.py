@@ -1,5 +1,7 @@
 """The home pose: where forward kinematics starts, and what it tells of the assembly mode."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import pytest
 from softkin import Frame, Status
@@ -22,22 +24,26 @@ def home_slot(machine: TurningMachine) -> tuple[int, ...]:
 
 
 def normalised(machine: TurningMachine, axes: Array, positions: Array, rotations: Array) -> Array:
-    """det A of unit vectors and moments per root mean square distance of the joints on the platform: the margin."""
+    """det A of unit vectors and moments per root mean square distance of the joints on the platform: the margin. A turn
+    that no leg feels is a row of its own.
+    """
     rods, guides, joints = machine.mechanism.rods, machine.mechanism.guides, machine.closure.joints(axes)
 
-    def point(end: tuple[object, ...]) -> Array:
-        found = machine.closure.at(list(end), joints, positions, rotations)  # type: ignore[arg-type]
-        return np.hstack([found, np.zeros((len(axes), 3 - found.shape[1]))])
+    def points(ends: Iterable[tuple[object, ...]]) -> Array:
+        found = [machine.closure.at(list(end), joints, positions, rotations) for end in ends]  # type: ignore[arg-type]
+        padded = [np.hstack([one, np.zeros((len(axes), 3 - one.shape[1]))]) for one in found]
+        return np.reshape(padded, (len(found), len(axes), 3)).swapaxes(0, 1)
 
-    plates = np.stack([point(leg.plate) for leg in (*rods, *guides)], axis=1)
-    bases = np.stack([point(r.base) for r in rods], axis=1)
-    ends = plates[:, : len(rods)]
-    along = np.concatenate([ends - bases, *(point(g.normal)[:, None] for g in guides)], axis=1)
+    plates, ends = points(r.plate for r in rods), points(r.end for r in rods)
+    along = np.hstack([ends - points(r.base for r in rods), points(g.normal for g in guides)])
     along /= np.linalg.norm(along, axis=2)[:, :, None]
-    arms = plates - positions[:, None]
-    radius = np.sqrt(((ends - ends.mean(axis=1, keepdims=True)) ** 2).sum(axis=2).mean(axis=1))
+    arms = np.hstack([ends, points(g.plate for g in guides)]) - positions[:, None]
+    radius = np.sqrt(((plates - plates.mean(axis=1, keepdims=True)) ** 2).sum(axis=2).mean(axis=1))
     moments = np.cross(arms, along)[:, :, machine.closure.axes_of_turn] / radius[:, None, None]
-    return np.linalg.det(np.concatenate([along[:, :, machine.closure.task], moments], axis=2))
+    rows = np.concatenate([along[:, :, machine.closure.task], moments], axis=2)
+    tool = rotations[:, None, :, 2]
+    free = [np.concatenate([0.0 * tool, tool], axis=2)] if machine.closure.is_free else []
+    return np.linalg.det(np.hstack([rows, *free]))
 
 
 def test_every_pose_around_home_is_found_in_the_configuration_of_home(machines: tuple[TurningMachine, ...]) -> None:
@@ -100,7 +106,7 @@ def test_the_margin_is_the_determinant_by_definition(machines: tuple[TurningMach
 
 def test_a_home_pose_out_of_reach_or_singular_is_refused(machines: tuple[TurningMachine, ...]) -> None:
     machine = machines[0]
-    points = [n for n in machine.given if n.startswith("platform_")]
+    points = [n for n in machine.given if n.startswith(("platform_", "ring_"))]
     far = {"home_y" if "home_y" in machine.given else "rod_length_1": 1e5}
     for given in (far, dict.fromkeys(points, 0.0), dict.fromkeys(points, 7.0)):
         assert refusal(machine.changed, **given) is Status.NOT_INITIALIZED

@@ -81,7 +81,7 @@ FAULTS = {
     "one positive quantity": (written(positive="sin(A2)"), "positive must be a tuple, not a sin, as in positive=(R,)"),
     "a row that the joints move and nobody commands": (
         written(task='Task("xz")', joints="(A1, A2)", chain="Rz(A1) * Tx(L1) * Ry(A2) * Tx(L2)", branches=""),
-        'y is not commanded but the joints move it; command it too: task=Task("xyz")',
+        'y is not commanded but the joints move it; command it too: task=Task("xyz"); or let it move: passive="y"',
     ),
     "more rows than joints": (
         written(task='Task("xyz", Turning.FULL)'),

@@ -106,14 +106,14 @@ def _in_full(text: str) -> str:
 
 
 def _series(text: str) -> list[str]:
-    """The names of a series: dRod2 to dRod4, dBase2X to dBase4Z, dRailX2 to dRailY4."""
-    found = re.findall(r"\b(d[A-Za-z]+?)([XYZ]?)(\d)([XYZ]?) to \1([XYZ]?)(\d)([XYZ]?)\b", text)
+    """The names of a series: dRod2 to dRod4, dBase2X to dBase4Z, dRailX2 to dRailY4, dRing2Radius to dRing5Radius."""
+    found = re.findall(r"\b(d[A-Za-z]+?)([XYZ]?)(\d)([A-Z]?[a-z]*) to \1([XYZ]?)(\d)([A-Z]?[a-z]*)\b", text)
     return [
         f"{stem}{before}{number}{after}"
         for stem, _, first, _, one, last, other in found
         for number in range(int(first), int(last) + 1)
         for before in ("XYZ"[: "XYZ".index(one) + 1] if one else ("",))
-        for after in ("XYZ"[: "XYZ".index(other) + 1] if other else ("",))
+        for after in ("XYZ"[: "XYZ".index(other) + 1] if other in {*"XYZ"} else (other,))
     ]
 
 
