@@ -68,7 +68,7 @@ class Loop:
         first = np.argmax(crossing, axis=1)[:, None]
         start = np.take_along_axis((places[:, 1:] + places[:, :-1]) / 2, first, axis=1)[:, 0]
         value = np.where(crossing.any(axis=1), start, np.nan).astype(given.dtype)
-        for _ in range(8):
+        for _ in range(12):
             error, slope = of(value, given)
             value = value - error / (own * slope)
         return value
