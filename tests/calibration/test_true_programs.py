@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import softkin
+import sympy as sp
 
 from derive.command.line import main
 from derive.description.catalogue import MECHANISMS
 from derive.description.mechanism import DescriptionError, Mechanism
 from derive.form.deviations import with_deviations
 from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.measured.pose import true_pose
 from derive.witness import witness
 from tests.calibration.machines import Planted, Truth, drawn_axes, planted
 from tests.calibration.test_true_machine import EXACT, apart, lost
@@ -163,6 +165,8 @@ def test_every_serial_machine_of_the_catalogue(name: str) -> None:
     kinematics: Kinematics = kinematics_of(described(name))
     found = witness(kinematics, described(name)).inverted
     assert found is not None and found.solutions >= 1
+    longest = max(sp.count_ops(let.value) for let in true_pose(kinematics.mechanism).statements)
+    assert longest < 1000, "a frame has no names, so that each further one is longer"
 
 
 def test_what_has_no_lines_is_refused() -> None:

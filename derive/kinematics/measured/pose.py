@@ -78,7 +78,7 @@ def _passed(mechanism: Mechanism, *, is_inner: bool) -> _Frames:
         if not factor.amount.free_symbols & moved:
             frames.rigid = frames.rigid * factor.matrix()
         elif factor.motion is Motion.SHIFT:
-            frames.slides.append((factor, frames.rigid))
+            frames.slide(factor)
         else:
             frames.turn(factor)
     return frames
@@ -118,11 +118,21 @@ class _Frames:
         self.screws.append(Screw(factor.motion, factor.amount, direction, origin))
         self.rigid, self.pending = self.rigid * own.T, factor.amount
 
+    def slide(self, factor: Factor) -> None:
+        """Go on to a slide. The rigid frame in front of it has names: it stands in those of all further slides."""
+        turn, place = self._rigid_named(f"slide_{len(self.slides)}_of_motion_{len(self.screws) + 1}")
+        self.rigid = turn.row_join(place).col_join(sp.Matrix([[0, 0, 0, 1]]))
+        self.slides.append((factor, self.rigid))
+
+    def _rigid_named(self, word: str) -> tuple[sp.Matrix, sp.Matrix]:
+        """Rotation and position of the rigid frame, with names."""
+        frame = self.with_names(self.rigid, word)
+        return self.named(f"rigid_{word}", frame[:3, :3]), self.named(f"rigid_{word}", frame[:3, 3])
+
     def close(self, word: str) -> None:
         """Compose with the last turn and with the rigid frame behind it; the rest of it begins the next one."""
-        frame = self.with_names(self.rigid, word)
-        turn, place = self.named(f"rigid_{word}", frame[:3, :3]), self.named(f"rigid_{word}", frame[:3, 3])
-        lines = [self.named(f"slide_{k}_{word}", self.with_names(f[:3, s.axis], word)) for k, (s, f) in self._counted()]
+        turn, place = self._rigid_named(word)
+        lines = [f[:3, s.axis] for s, f in self.slides]
         self.rigid, inclined = sp.eye(4), turn
         if self.is_inner and self.pending is None and not self.slides:
             self.base = place, turn
