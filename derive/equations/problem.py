@@ -45,6 +45,8 @@ class Equation:
     """For an unknown, the largest derivative by it, where parameters alone determine it. Margins are divided by it."""
     is_length: bool = True
     """Whether its terms are lengths; those of a rotation have no unit."""
+    is_squared: bool = False
+    """Whether they are squares of lengths."""
     column: Column | None = None
     """The column of the entry of a rotation that it holds."""
     apart: tuple[sp.Expr, ...] = ()

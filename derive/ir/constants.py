@@ -20,8 +20,8 @@ BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
-SQUARES = sp.Float("1e-15")
-"""The rounding of a sum of squares of lengths, as a share of the squared scale of the machine."""
+ROUNDING_OF_SUMS = sp.Float("1e-15")
+"""The rounding of a sum of lengths, or of their squares, as a share of the scale of the machine, or of its square."""
 LARGEST_MISS = sp.Float("1e-3")
 """A surplus rod fits a pose where it misses by at most this share of its length, unless a length is given."""
 LARGEST = sp.Integer(10) ** 9

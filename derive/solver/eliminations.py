@@ -145,4 +145,4 @@ def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equati
         for e, (_, known) in zip(equations, sides, strict=True)
     ]
     reach = naming.length("reach", *spanned, note="distance that the remaining links must span")
-    return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets)
+    return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets, is_squared=True)

@@ -266,7 +266,7 @@ const softkin_native softkin_machines[] = {
     {"sccc ca48a15968b1fb6a", &sccc_mechanism, {NULL, NULL}},
     {"scissorlift 182404732b6dc6f9", &scissorlift_mechanism, {scissorlift_regular, NULL}},
     {"skewgantry3 bb33166105a70fdd", &skewgantry3_mechanism, {skewgantry3_regular, NULL}},
-    {"swivelarm c5d73dd787b52bc6", &swivelarm_mechanism, {swivelarm_regular, swivelarm_regular_all}},
+    {"swivelarm ae547d9cb42717d6", &swivelarm_mechanism, {swivelarm_regular, swivelarm_regular_all}},
     {"tabletable_ab 2d2564872c585f43", &tabletable_ab_mechanism,
         {tabletable_ab_regular, tabletable_ab_regular_all}},
     {"tabletable_ac 1e2e1e9aed843dde", &tabletable_ac_mechanism,

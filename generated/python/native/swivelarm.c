@@ -340,8 +340,8 @@ static softkin_status fill_machine(void *machine, const void *parameters, softki
     return SOFTKIN_NOT_INITIALIZED;
   }
   const double machine_scale = p->arm_length; /* characteristic length of the machine */
-  /* largest cosine within reach: 1, and the rounding of squared lengths */
-  const double bound_of_cos_a1 = 1.0000000000005 + 1e-15*machine_scale*machine_scale/p->arm_length;
+  /* largest cosine within reach: 1, and the rounding of lengths */
+  const double bound_of_cos_a1 = 1.0000000000005 + 1e-15*machine_scale/p->arm_length;
   const double half_by_arm_length = 0.5/p->arm_length;
   const double one_by_arm_length = 1.0/p->arm_length;
   made.lowest_a1 = window_of_a1.lowest;

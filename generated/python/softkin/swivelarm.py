@@ -64,8 +64,8 @@ class Constants:
         self.lowest_a2, self.highest_a2, *_ = machine._window("a2")
         self.lowest_a3, self.highest_a3, self.single_a3, self.mid_a3 = machine._window("a3")
         machine_scale = arm_length  # characteristic length of the machine
-        # largest cosine within reach: 1, and the rounding of squared lengths
-        bound_of_cos_a1 = 1.0000000000005 + 1e-15 * machine_scale * machine_scale / arm_length
+        # largest cosine within reach: 1, and the rounding of lengths
+        bound_of_cos_a1 = 1.0000000000005 + 1e-15 * machine_scale / arm_length
         half_by_arm_length = 0.5 / arm_length
         one_by_arm_length = 1.0 / arm_length
         self.arm_length, self.offset_a1, self.offset_a2, self.offset_a3 = arm_length, offset_a1, offset_a2, offset_a3
@@ -82,7 +82,7 @@ class SwivelArm(TwistChoice):
     __slots__ = ("_all_trusted", "_constants", "_finish", "_one_trusted")
 
     NAME = "Softkin_SwivelArm"
-    KEY = "swivelarm c5d73dd787b52bc6"
+    KEY = "swivelarm ae547d9cb42717d6"
     AXES = (
         Axis(name="A1", kind="rotary", unit="deg", meaning="Swing of the arm about Z", multi_turn=True),
         Axis(name="A2", kind="linear", unit="u", meaning="Lift along Z, up", multi_turn=False),

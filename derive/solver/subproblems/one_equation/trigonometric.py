@@ -20,7 +20,7 @@ import sympy as sp
 
 from derive.algebra.normal_form import linear_coefficients
 from derive.equations.problem import Binding, Equation, Problem, StepDeterminant, sign_of
-from derive.ir.constants import BOUNDARY, FREE_ANGLE, SQUARES
+from derive.ir.constants import BOUNDARY, FREE_ANGLE, ROUNDING_OF_SUMS
 from derive.ir.primitives import Root, Select
 from derive.ir.program import Let, Require, Statement, Status
 from derive.ir.symbols import BOUND_OF, cosine, real, sine
@@ -111,7 +111,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
         Let(less_cos, less, f"law of cosines for {angle.name} ({equation.label}): 1 - cosine, times a scale"),
         Let(plus_cos, more, "1 + cosine, times the scale"),
         *scale,
-        *_cosine(problem, angle, amplitude, cos_name, (plus_cos - less_cos) / below, named, holds),
+        *_cosine(problem, (equation, angle), amplitude, cos_name, (plus_cos - less_cos) / below, named, holds),
         Let(square, less_cos * plus_cos, "sine squared, times the squared scale"),
         Let(sin_name, 2 * sigma * Root(square) / size(below)),
         *(_turned(problem, equation, angle, amplitude, (cos_name, sin_name)) if turned else ()),
@@ -130,7 +130,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: Am
 
 def _cosine(
     problem: Problem,
-    angle: sp.Symbol,
+    solved: tuple[Equation, sp.Symbol],
     amplitude: Amplitude,
     name: sp.Symbol,
     value: sp.Expr,
@@ -138,20 +138,22 @@ def _cosine(
     holds: sp.Basic | None,
 ) -> tuple[Statement, ...]:
     """The cosine of the swing, and the condition that it exists. Near the place where the arm vanishes, rounding of the
-    equation may move the cosine beyond one: there it is set to one. holds: the condition that the other leg exists;
-    None if the value is always a cosine, as an entry of a rotation is.
+    equation may move the cosine beyond one: there it is set to one. solved: the equation, and the angle in it. holds:
+    the condition that the other leg exists; None if the value is always a cosine, as an entry of a rotation is.
     """
     if holds is None:
         return (Let(name, value),)
+    equation, angle = solved
     shown = sp.Mul(*factors) if amplitude.shown_factors is None else amplitude.shown_factors
     known = (*amplitude.naming.lets, *(s for s in amplitude.guard if isinstance(s, Let)))
     reason = out_of_reach(angle, shown, known)
     if amplitude.aimable is None:
         most: tuple[Let, ...] = ()
         bound: sp.Expr = 1 + BOUNDARY / 2
-        if amplitude.is_fixed:  # a constant of the machine then: a short link on a long one rounds more than this
-            squares, bound = bound + SQUARES * problem.scale**2 / amplitude.length, real(f"{BOUND_OF}{name.name}")
-            most = (Let(bound, squares, "largest cosine within reach: 1, and the rounding of squared lengths"),)
+        if amplitude.is_fixed and equation.is_length:  # a constant: a short link on a long one rounds more than this
+            unit, what = (problem.scale**2, "squared lengths") if equation.is_squared else (problem.scale, "lengths")
+            rounded, bound = bound + ROUNDING_OF_SUMS * unit / amplitude.length, real(f"{BOUND_OF}{name.name}")
+            most = (Let(bound, rounded, f"largest cosine within reach: 1, and the rounding of {what}"),)
         return *most, Let(name, value), Require(sp.Le(sp.Abs(name), bound), Status.UNREACHABLE, reason=reason)
     ratio, size = real(f"ratio_of_{angle.name}"), amplitude.determinant_scale
     near = sp.Le(sp.Abs(ratio), 1 + BOUNDARY / 2 * (1 + size / amplitude.length))
