@@ -97,7 +97,7 @@ class _Frames:
     rigid: sp.Matrix = field(default_factory=lambda: sp.eye(4))
     """The rigid frame since the last turn."""
     slides: list[tuple[Factor, sp.Matrix]] = field(default_factory=list)
-    """The slides since the last turn, each with the rigid frame in front of it."""
+    """The slides since the last turn, each with its direction."""
     pending: sp.Expr | None = None
     """The angle of the last turn, which is about z."""
     sines: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
@@ -122,7 +122,7 @@ class _Frames:
         """Go on to a slide. The rigid frame in front of it has names: it stands in those of all further slides."""
         turn, place = self._rigid_named(f"slide_{len(self.slides)}_of_motion_{len(self.screws) + 1}")
         self.rigid = turn.row_join(place).col_join(sp.Matrix([[0, 0, 0, 1]]))
-        self.slides.append((factor, self.rigid))
+        self.slides.append((factor, turn[:, factor.axis]))
 
     def _rigid_named(self, word: str) -> tuple[sp.Matrix, sp.Matrix]:
         """Rotation and position of the rigid frame, with names."""
@@ -132,7 +132,7 @@ class _Frames:
     def close(self, word: str) -> None:
         """Compose with the last turn and with the rigid frame behind it; the rest of it begins the next one."""
         turn, place = self._rigid_named(word)
-        lines = [f[:3, s.axis] for s, f in self.slides]
+        lines = [line for _, line in self.slides]
         self.rigid, inclined = sp.eye(4), turn
         if self.is_inner and self.pending is None and not self.slides:
             self.base = place, turn
@@ -150,16 +150,13 @@ class _Frames:
             own = self.with_names(_about_z(-about), word) * turned
             self.sines |= {sp.cos(self.pending): own[0, 0], sp.sin(self.pending): own[1, 0]}
             self.rotation = self.named(f"turned_{word}", self.rotation * turned)
-        for k, (slide, _) in self._counted():
+        for k, (slide, _) in enumerate(self.slides):
             direction = sp.ImmutableMatrix(self.named(f"line_{k}_{word}", self.rotation * lines[k]))
             self.screws.append(Screw(slide.motion, slide.amount, direction, sp.ImmutableMatrix(self.position)))
             place = place + lines[k] * slide.amount
         place = self.named(f"slid_{word}", place)
         self.position = self.named(f"at_{word}", self.position + self.rotation * place)
         self.rotation, self.slides = self.named(f"at_{word}", self.rotation * inclined), []
-
-    def _counted(self) -> list[tuple[int, tuple[Factor, sp.Matrix]]]:
-        return list(enumerate(self.slides))
 
     def with_names(self, matrix: sp.Matrix, word: str) -> sp.Matrix:
         """The matrix with names for its sines and cosines."""
